@@ -1,0 +1,1 @@
+"""The wire: messages to framed bytes, and the port that carries them."""

@@ -1,0 +1,132 @@
+"""The one immutable record that leaves the loop at each tick; everybody outside reads this and no more.
+
+All values are SI; the edge (`server.api.schemas`) converts to the lab's units.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+from control.model import Observation, Pivot, Pose, Tracking
+
+Vector = tuple[float, float, float]
+ZERO: Vector = (0.0, 0.0, 0.0)
+
+
+class RigState(StrEnum):
+    """What the rig may do: only ARMED and RUNNING ever put current into a coil."""
+
+    DISARMED = "disarmed"
+    ARMED = "armed"
+    RUNNING = "running"
+    HELD = "held"
+    FAULT = "fault"
+
+
+@dataclass(frozen=True, slots=True)
+class Fault:
+    """One thing that is wrong: a short name, a sentence for people, and when it was first seen (rig time, s)."""
+
+    code: str
+    message: str
+    since: float
+
+
+@dataclass(frozen=True, slots=True)
+class Command:
+    """What the rig asks of the field at this tick.
+
+    rate: of the field's heading, rad/s.  heading_goal: where the field's heading stops, rad.
+    tilt: elevation of the field that presses the pivot down, rad.  field: strength, T (0 when idle).
+    """
+
+    controller: str
+    pivot: Pivot
+    rate: float
+    heading_goal: float
+    tilt: float
+    field: float
+
+
+@dataclass(frozen=True, slots=True)
+class Timing:
+    """How the loop keeps its pace: rate in Hz, the rest in s; latency is frame-in to bytes-out."""
+
+    rate: float
+    period_p99: float
+    latency_p50: float
+    latency_p99: float
+    dropped_frames: int
+
+
+@dataclass(frozen=True, slots=True)
+class LinkStatus:
+    """The serial link to the board.
+
+    state: "closed", "greeting", "configuring" or "ready".  round_trip: last drive to its echo, s, or None.
+    """
+
+    state: str
+    port: str
+    firmware: str
+    boot_id: int
+    round_trip: float | None
+    bad_frames: int
+    board_state: str
+    board_faults: tuple[str, ...]
+    supply: float
+
+
+@dataclass(frozen=True, slots=True)
+class RunProgress:
+    """The run that is going on: error figures are over the ticks so far, in m; see `control.metrics`."""
+
+    id: str
+    elapsed: float
+    duration: float
+    passes: float
+    passes_done: float
+    paused: bool
+    mean_error: float
+    steps: int
+    sweeps: int
+    reversals: int
+
+
+@dataclass(frozen=True, slots=True)
+class Snapshot:
+    """One tick.
+
+    time: rig time of this tick, s.  captured_at: capture time of its frame, s, None without a frame.
+    pose: the estimate carried forward to `time`; None while the robot has not been found.
+    pose_sigma: its standard deviations (m, m, rad).
+    tracking_age: time since the last accepted measurement, s (inf before the first one).
+    reference: the desired point, m, while a run is on.  error: distance from the pose to it, m.
+    currents, measured_currents: commanded and sensed coil currents, A.  field: the field that the
+    commanded currents make at the robot, T.  saturated: a current was scaled back to its limit.
+    """
+
+    tick: int
+    time: float
+    captured_at: float | None
+    rig: RigState
+    reason: str
+    faults: tuple[Fault, ...]
+    simulated: bool
+    pose: Pose | None
+    pose_sigma: Vector
+    observation: Observation | None
+    tracking: Tracking
+    tracking_age: float
+    command: Command
+    reference: tuple[float, float] | None
+    error: float | None
+    currents: Vector
+    measured_currents: Vector
+    field: Vector
+    saturated: bool
+    body_tilt: float
+    run: RunProgress | None
+    timing: Timing
+    link: LinkStatus

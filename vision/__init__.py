@@ -1,0 +1,1 @@
+"""Pixels to pose: camera sources, calibration, detection, tracking, the synthetic camera, encoding."""
