@@ -96,10 +96,14 @@ class Expectation:
 
     pose: predicted pose at the frame's capture time.
     position_sigma: one standard deviation of the position, m.
+    pivot, tilt: the end expected to be pressed down, and the elevation of the other one above the plate, rad:
+    a raised end is nearer to the camera, which would otherwise turn and shift the measured pose.
     """
 
     pose: Pose
     position_sigma: float
+    pivot: Pivot = PIVOT_A
+    tilt: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -141,3 +145,13 @@ class Body:
     pose: Pose
     pivot: Pivot
     tilt: float
+
+
+def body_tilt(elevation: float, lift_ratio: float) -> float:
+    """How far the free end rises, rad, when the field has this elevation (rad) above the plate.
+
+    Solves L sin(a - b) = cos b for b, with L = 2 m B / (W L) the magnet's torque over the weight's; 0 while
+    L sin a <= 1, when the end does not lift.
+    """
+    lift = lift_ratio * math.sin(elevation) - 1.0
+    return math.atan2(lift, lift_ratio * math.cos(elevation)) if lift > 0.0 else 0.0

@@ -1,0 +1,50 @@
+# One word per chore. Needs Python 3.11 or newer; everything else is set up here.
+SHELL := /bin/bash
+BIN := .venv/bin
+JOBS ?= 2
+
+.PHONY: run setup test test-full lint format bench clean browser help
+
+help: ## show this list
+	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | expand -t 14
+
+run: .stamps/run ## open the dashboard of the simulated rig
+	$(BIN)/pivotrig serve --sim --open
+
+setup: .stamps/dev ## make the environment, with all that tests need
+
+test: .stamps/dev browser ## run every test
+	$(BIN)/pytest -n $(JOBS) -m "not exclusive"
+	$(BIN)/pytest -m exclusive
+
+test-full: export PIVOTRIG_FULL := 1
+test-full: .stamps/dev browser ## the same tests with the full numbers of repetitions
+	$(BIN)/pytest -n $(JOBS) -m "not exclusive"
+	$(BIN)/pytest -m exclusive
+
+lint: .stamps/dev ## style, types and the folder rules
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/lint-imports
+	$(BIN)/pyright
+
+format: .stamps/dev ## put the code into its layout
+	$(BIN)/ruff check --fix .
+	$(BIN)/ruff format .
+
+bench: .stamps/dev ## measure, against a reference in the same run
+	$(BIN)/python -m tests.benchmarks
+
+browser:
+	@bash .ci/need chromium chromium
+
+.stamps/run: pyproject.toml uv.lock
+	@bash .ci/environment --no-dev
+	@touch $@
+
+.stamps/dev: pyproject.toml uv.lock
+	@bash .ci/environment
+	@touch $@ .stamps/run
+
+clean: ## remove everything that was set up
+	rm -rf .venv .stamps

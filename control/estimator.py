@@ -1,0 +1,231 @@
+"""Where the robot is now: an extended Kalman filter over (x, y, heading) with the pivot kinematics as model.
+
+A measurement is as old as the camera is late. The filter lives at capture times: it is predicted to the
+frame's capture time, corrected there, and its mean is carried forward to now through what the field has done
+since. The input is the field's motion about the active pivot, less the play that the body is known to have.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from filterpy.kalman import ExtendedKalmanFilter
+from numpy.typing import NDArray
+
+from control.backlash import ENGAGED_AFTER
+from control.field_model import FieldModel
+from control.model import PIVOT_A, PIVOT_B, Expectation, Measurement, Pivot, Pose, body_tilt, swing, wrap
+from control.snapshot import Vector
+
+GATE = 16.27
+"""99.9 % point of chi-squared with three degrees of freedom."""
+
+
+@dataclass(frozen=True, slots=True)
+class EstimatorSettings:
+    """Standard deviations (m, rad). measured: of one sighting.  drift: per root second at rest.
+
+    slip: of the position, per pivot switch.  swing, loose: of the heading, per radian that the field turns, once
+    it surely pulls the body along, and while it may still be taking up the play after a reversal.
+    actuation_delay: from a field command to the body's answer, s (serial line and coil currents).
+    lift_ratio: 2 m B / (W L), how far the free end rises (`control.model.body_tilt`).
+    """
+
+    measured_position: float = 0.00004
+    measured_heading: float = math.radians(0.35)
+    drift_position: float = 0.0002
+    drift_heading: float = math.radians(2.0)
+    slip: float = 0.0005
+    swing: float = 0.12
+    loose: float = 0.6
+    actuation_delay: float = 0.001
+    lift_ratio: float = 3.2
+
+
+@dataclass(frozen=True, slots=True)
+class Carried:
+    """The estimate at one instant: pose, standard deviations (m, m, rad)."""
+
+    pose: Pose
+    sigma: Vector
+
+
+@dataclass(frozen=True, slots=True)
+class Grip:
+    """How the field holds the body.
+
+    slack: where the body lies within the play, rad, within +- half of it.
+    pull: how far the field has turned since it last reversed, rad, signed.
+    """
+
+    slack: float = 0.0
+    pull: float = 0.0
+
+    @property
+    def is_tight(self) -> bool:
+        """The play is surely taken up."""
+        return abs(self.pull) >= ENGAGED_AFTER
+
+    def after(self, angle: float, half_play: float) -> Grip:
+        """The grip once the field has turned by `angle`, rad."""
+        slack = max(-half_play, min(half_play, self.slack + angle))
+        return Grip(slack, angle if angle * self.pull < 0.0 else self.pull + angle)
+
+
+class PivotFilter(ExtendedKalmanFilter):
+    """filterpy's filter whose prediction of the mean is the exact arc instead of a matrix product."""
+
+    def __init__(self) -> None:
+        super().__init__(dim_x=3, dim_z=3)
+        self.arrival = np.zeros(3)
+
+    def predict_x(self, u: object = 0) -> None:  # noqa: ARG002 (filterpy's signature)
+        self.x = self.arrival
+
+
+class Estimator:
+    """Feed it every frame: `expect` before the search, `correct` after it, `carry` for the pose now."""
+
+    def __init__(self, settings: EstimatorSettings, field: FieldModel, length: float) -> None:
+        self._settings = settings
+        self._field = field
+        self._length = length
+        self._filter = PivotFilter()
+        self._filter.R = np.diag(
+            [settings.measured_position**2, settings.measured_position**2, settings.measured_heading**2]
+        )
+        self._time = -math.inf
+        self._grip = Grip()
+        self._known = False
+        self.half_play = 0.0
+        """Half width of the play between field and body, rad; the loop keeps it up to date."""
+        self.last_accepted = -math.inf
+        """Capture time of the newest measurement that passed the gate, s."""
+
+    @property
+    def known(self) -> bool:
+        return self._known
+
+    def forget(self) -> None:
+        """The robot is lost: start again at the next sighting."""
+        self._known = False
+
+    def start(self, measurement: Measurement) -> None:
+        """Believe one sighting entirely."""
+        pose = measurement.pose
+        self._filter.x = np.array([pose.x, pose.y, pose.heading])
+        self._filter.P = 4.0 * self._filter.R
+        self._time = self.last_accepted = measurement.captured_at
+        self._grip = Grip()
+        self._known = True
+
+    def expect(self, time: float) -> Expectation | None:
+        """Predict to the capture time of the frame that is about to be searched."""
+        if not self._known or time < self._time:
+            return None
+        pose, self._grip, jacobian, noise = self._motion(self._time, time)
+        self._filter.arrival = np.array([pose.x, pose.y, pose.heading])
+        self._filter.F = jacobian
+        self._filter.Q = noise
+        self._filter.predict()
+        self._time = time
+        elevation = self._field.elevation_at(time - self._settings.actuation_delay)
+        return Expectation(
+            pose,
+            position_sigma=math.sqrt(max(self._filter.P[0, 0], self._filter.P[1, 1])),
+            pivot=PIVOT_B if elevation > 0.0 else PIVOT_A,
+            tilt=body_tilt(abs(elevation), self._settings.lift_ratio),
+        )
+
+    def correct(self, measurement: Measurement) -> bool:
+        """Fuse a sighting made at the time of the last `expect`; False when the gate refuses it."""
+        z = np.array([measurement.pose.x, measurement.pose.y, measurement.pose.heading])
+        if not np.isfinite(z).all() or self.distance(z) > GATE:
+            return False
+        self._filter.update(z, _jacobian_of_sighting, _sighting, residual=_residual)
+        self.last_accepted = measurement.captured_at
+        return True
+
+    def distance(self, z: NDArray[np.float64]) -> float:
+        """Squared Mahalanobis distance of a sighting (x, y, heading) from the prediction."""
+        residual = _residual(z, self._filter.x)
+        return float(residual @ np.linalg.solve(self._filter.P + self._filter.R, residual))
+
+    @property
+    def grip(self) -> Grip:
+        """How the field holds the body at the filter's own time."""
+        return self._grip
+
+    def carry(self, time: float) -> Carried:
+        """The estimate carried forward to `time` (s) through what the field has done since."""
+        pose, _, jacobian, noise = self._motion(self._time, time)
+        covariance = jacobian @ self._filter.P @ jacobian.T + noise
+        sigma = np.sqrt(np.maximum(covariance.diagonal(), 0.0))
+        return Carried(pose, (float(sigma[0]), float(sigma[1]), float(sigma[2])))
+
+    @property
+    def covariance(self) -> NDArray[np.float64]:
+        """(3, 3) covariance of (x, y, heading) at the filter's own time, m^2, m rad, rad^2."""
+        return self._filter.P
+
+    def _pose(self) -> Pose:
+        x, y, heading = self._filter.x.tolist()
+        return Pose(x, y, heading)
+
+    def _motion(
+        self, start: float, end: float
+    ) -> tuple[Pose, Grip, NDArray[np.float64], NDArray[np.float64]]:
+        """Arrival, grip, Jacobian and process noise of the body's motion from `start` to `end`."""
+        delay = self._settings.actuation_delay
+        departure, grip = self._pose(), self._grip
+        arrival, noise = departure, _Noise(self._settings, end - start)
+        pivot: Pivot | None = None
+        for turn in self._field.turns(start - delay, end - delay):
+            held = grip.after(turn.angle, self.half_play)
+            arrival = swing(arrival, turn.pivot, turn.angle + grip.slack - held.slack, self._length)
+            noise.turn(turn.angle, held.is_tight)
+            if pivot is not None and turn.pivot != pivot:
+                noise.switch()
+            grip, pivot = held, turn.pivot
+        return arrival, grip, _jacobian(departure, arrival), noise.covariance()
+
+
+class _Noise:
+    """Process noise gathered along one piece of motion."""
+
+    def __init__(self, settings: EstimatorSettings, elapsed: float) -> None:
+        elapsed = max(elapsed, 0.0)
+        self._settings = settings
+        self._position = settings.drift_position**2 * elapsed
+        self._heading = settings.drift_heading**2 * elapsed
+
+    def turn(self, angle: float, is_tight: bool) -> None:
+        share = self._settings.swing if is_tight else self._settings.loose
+        self._heading += (share * angle) ** 2
+
+    def switch(self) -> None:
+        self._position += self._settings.slip**2
+
+    def covariance(self) -> NDArray[np.float64]:
+        return np.diag([self._position, self._position, self._heading])
+
+
+def _jacobian(before: Pose, after: Pose) -> NDArray[np.float64]:
+    """d(after)/d(before): the displacement is fixed in the body's frame, so it turns with the heading."""
+    return np.array([[1.0, 0.0, before.y - after.y], [0.0, 1.0, after.x - before.x], [0.0, 0.0, 1.0]])
+
+
+def _sighting(x: NDArray[np.float64]) -> NDArray[np.float64]:
+    return x
+
+
+def _jacobian_of_sighting(_: NDArray[np.float64]) -> NDArray[np.float64]:
+    return np.eye(3)
+
+
+def _residual(z: NDArray[np.float64], predicted: NDArray[np.float64]) -> NDArray[np.float64]:
+    residual = z - predicted
+    residual[2] = wrap(residual[2])
+    return residual

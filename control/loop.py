@@ -1,0 +1,410 @@
+"""One tick: a frame in, a drive command out, one snapshot to everybody else.
+
+The loop has no clock and no thread of its own; its shell (`server.rig`, or a headless run) reads the camera
+and hands every frame in together with the rig's time. All methods belong to one thread, but `estop`, which
+may come from any.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol
+
+from control.actuation import Actuation
+from control.coils import CoilSet
+from control.field_model import FieldModel
+from control.gait import Gait
+from control.link.conversion import BoardState, LinkError, Telemetry
+from control.link.port import Link
+from control.metrics import Metrics
+from control.model import PIVOT_A, Frame, Pivot, Pose, Tracking
+from control.perception import Perception
+from control.runs import RunRequest, RunState, Selection
+from control.safety import (
+    ENERGISED,
+    Event,
+    Finding,
+    Health,
+    Limits,
+    Refused,
+    Severity,
+    after,
+    assess,
+)
+from control.snapshot import ZERO, Fault, RigState, Snapshot, Vector
+from control.timing import TimingLog
+from control.trajectories import check_inside
+from control.walk import Walk
+from control.walker import ControllerFault, Stride
+
+MISMATCH_SHARE = 0.15
+"""Sensed and commanded current may differ by this share of the limit: the sense is off by up to 25 % of a
+small current, and the coils lag behind a ramp (firmware-notes.md)."""
+LOG_LENGTH = 200
+"""Announcements that wait for the shell to take them."""
+
+
+class Camera(Protocol):
+    """A source of frames; stamps them with the clock that `now` reads."""
+
+    simulated: bool
+    size: tuple[int, int]
+    rate: float
+
+    def read(self, timeout: float) -> Frame | None: ...
+
+    def now(self) -> float: ...
+
+    def close(self) -> None: ...
+
+
+@dataclass(frozen=True, slots=True)
+class Announcement:
+    """One line of the event log. severity: "info", "warn" or "error".  time: rig time, s."""
+
+    time: float
+    severity: str
+    code: str
+    message: str
+
+
+@dataclass(frozen=True, slots=True)
+class Ended:
+    """How a run ended."""
+
+    id: str
+    state: RunState
+    reason: str
+    metrics: Metrics
+
+
+@dataclass(frozen=True, slots=True)
+class Parts:
+    """What the loop is made of; `server.assembly` builds it from the rig file."""
+
+    perception: Perception
+    actuation: Actuation
+    field: FieldModel
+    link: Link
+    coils: CoilSet
+    limits: Limits
+    length: float
+    simulated: bool
+    body_tilt: Callable[[float], float]
+    """From the field's tilt to the body's, rad, for drawing."""
+
+
+class ControlLoop:
+    """The rig's states and what each tick does in them."""
+
+    def __init__(self, parts: Parts, stopwatch: Callable[[], float], now: float) -> None:
+        """stopwatch: real seconds.  now: the rig's time, s."""
+        self._parts = parts
+        self._timing = TimingLog(stopwatch)
+        self._state = RigState.DISARMED
+        self._reason = "ready to arm"
+        self._findings: tuple[Finding, ...] = ()
+        self._since: dict[str, float] = {}
+        self._walk: Walk | None = None
+        self._gait = Gait()
+        self._tick = 0
+        self._now = self._frame_at = now
+        self._telemetry: Telemetry | None = None
+        self._agreed_at = self._driving_at = now
+        self._pose: Pose | None = None
+        self._sigma: Vector = ZERO
+        self._log: deque[Announcement] = deque(maxlen=LOG_LENGTH)
+        self._ended: deque[Ended] = deque(maxlen=LOG_LENGTH)
+
+    @property
+    def state(self) -> RigState:
+        return self._state
+
+    @property
+    def field_is_ready(self) -> bool:
+        """The field is up at full strength."""
+        return self._parts.field.is_ready
+
+    def take_announcements(self) -> list[Announcement]:
+        """What happened since the last call, oldest first."""
+        return [self._log.popleft() for _ in range(len(self._log))]
+
+    def take_ended(self) -> list[Ended]:
+        """Runs that ended since the last call."""
+        return [self._ended.popleft() for _ in range(len(self._ended))]
+
+    # What the operator asks for ------------------------------------------------------------------
+
+    def arm(self, gait: Gait) -> None:
+        """Bring the field up along the robot's heading; raises `Refused`."""
+        state = after(self._state, Event.ARM)
+        self._require_fit()
+        self._gait = gait
+        self._energise()
+        self._enter(state, "armed", "info")
+
+    def disarm(self, reason: str = "disarmed by the operator") -> None:
+        """Zero the coils and end the run; nothing to do when disarmed already."""
+        if self._state is RigState.DISARMED:
+            return
+        state = after(self._state, Event.DISARM)
+        self._stop_coils()
+        self._end_run(RunState.ABORTED, reason)
+        self._enter(state, reason, "info")
+
+    def estop(self) -> None:
+        """Zero now; from any thread. The state follows at the next tick, or at `latch_estop`."""
+        self._parts.actuation.stop_from_outside()
+
+    def latch_estop(self) -> None:
+        """Enter the fault state after an `estop`; keeps the first cause of a fault that is on already."""
+        if self._state is not RigState.FAULT:
+            self._latch("estop", "emergency stop")
+
+    def reset(self) -> None:
+        """Leave the fault state, disarmed; a board that has latched a fault is greeted anew."""
+        state = after(self._state, Event.RESET)
+        if self._telemetry is not None and self._telemetry.faults:
+            self._parts.link.greet()
+        self._parts.actuation.allow()
+        self._enter(state, "reset; arm to go on", "info")
+
+    def start(self, id: str, request: RunRequest) -> None:
+        """Start a run; raises `Refused`, or what a bad selection raises."""
+        state = after(self._state, Event.START)
+        pose = self._require_fit()
+        walk = Walk(id, request, self._parts.length, self._parts.field.pivot, pose.heading)
+        check_inside(walk.trajectory, self._parts.coils.workspace)
+        self._walk = walk
+        self._gait = request.selection.gait
+        self._enter(state, "walking", "info")
+
+    def change(self, selection: Selection) -> None:
+        """Another controller, trajectory or gait for the run that is on; raises like `start`."""
+        if self._walk is None:
+            raise Refused("there is no run to change; start one first")
+        check_inside(selection.build_trajectory(), self._parts.coils.workspace)
+        self._walk.change(selection)
+        self._gait = selection.gait
+
+    def stop_run(self) -> None:
+        """End the run; an armed rig stays armed, a held one is disarmed."""
+        if self._walk is None:
+            raise Refused("there is no run to stop")
+        self._end_run(RunState.STOPPED, "stopped by the operator")
+        if self._state is RigState.HELD:
+            self.disarm("run stopped while held")
+        else:
+            self._enter(after(self._state, Event.FINISH), "run stopped", "info")
+
+    def pause(self) -> None:
+        """Hold the run: zero current, and go on with `resume`."""
+        if self._walk is None:
+            raise Refused("there is no run to pause")
+        self._hold("paused by the operator", "info")
+
+    def resume(self) -> None:
+        """Go on after a hold, from where the robot is; raises `Refused` while the cause is there."""
+        state = after(self._state, Event.RESUME)
+        pose = self._require_fit()
+        self._energise()
+        if self._walk is None:
+            self._enter(RigState.ARMED, "armed", "info")
+            return
+        self._walk.walker.resume(pose.heading)
+        self._enter(state, "walking", "info")
+
+    # One tick ------------------------------------------------------------------------------------
+
+    def tick(self, frame: Frame | None, now: float) -> Snapshot:
+        """Take a frame (None: none came in time) at rig time `now`; returns what everybody may see."""
+        gap, self._now = now - self._now, now
+        self._tick += 1
+        self._parts.field.advance(now)
+        self._hear(now)
+        if frame is not None:
+            self._timing.frame_in(frame.index)
+            self._frame_at = now
+            self._parts.perception.look(frame)
+        self._pose, self._sigma = self._parts.perception.pose_at(now)
+        self._judge(gap, now)
+        if self._state in ENERGISED:
+            self._drive(now, gap)
+        if frame is not None:
+            self._timing.bytes_out()
+        return self._snapshot(frame)
+
+    def _hear(self, now: float) -> None:
+        telemetry = self._parts.link.poll()
+        if telemetry is None:
+            return
+        if self._telemetry is not None and telemetry.boot_id != self._telemetry.boot_id:
+            self._parts.field.forget_clock()
+        self._telemetry = telemetry
+        self._parts.field.synchronise(telemetry.board_time, telemetry.received_at, telemetry.heading)
+        if telemetry.state is BoardState.DRIVING or self._state not in ENERGISED:
+            self._driving_at = now
+        if self._currents_agree(telemetry):
+            self._agreed_at = now
+
+    def _currents_agree(self, telemetry: Telemetry) -> bool:
+        pairs = zip(telemetry.currents, telemetry.measured_currents, self._parts.limits.currents, strict=True)
+        return all(
+            abs(abs(wanted) - abs(sensed)) <= MISMATCH_SHARE * limit for wanted, sensed, limit in pairs
+        )
+
+    def _judge(self, gap: float, now: float) -> None:
+        self._findings = assess(self._health(gap, now), self._parts.limits)
+        self._remember_since(now)
+        if self._parts.actuation.stopped_from_outside and self._state is not RigState.FAULT:
+            self._latch("estop", "emergency stop")
+        if not self._findings:
+            return
+        worst = self._findings[0]
+        if worst.severity is Severity.LATCH and self._state is not RigState.FAULT:
+            self._latch(worst.code, worst.message)
+        elif worst.severity is Severity.DISARM and self._state in ENERGISED | {RigState.HELD}:
+            self._lose(worst)
+        elif worst.severity is Severity.HOLD and self._state in ENERGISED:
+            self._hold(worst.message, "error", worst.code)
+
+    def _health(self, gap: float, now: float) -> Health:
+        perception, link, telemetry = self._parts.perception, self._parts.link, self._telemetry
+        frame = perception.frame
+        return Health(
+            tick_gap=gap,
+            frame_age=now - self._frame_at if frame is not None else math.inf,
+            frame_delay=self._frame_at - frame.captured_at if frame is not None else math.inf,
+            identical_frames=perception.identical_frames,
+            tracking=perception.tracking,
+            tracking_age=perception.age,
+            pose=self._pose,
+            link_ready=link.is_ready,
+            link_reason=link.reason,
+            telemetry_age=now - telemetry.received_at if telemetry is not None else math.inf,
+            board_faults=telemetry.faults if telemetry is not None else (),
+            not_driving=now - self._driving_at if self._state in ENERGISED else 0.0,
+            board_state=telemetry.state.value if telemetry is not None else "",
+            current_mismatch=now - self._agreed_at,
+        )
+
+    def _drive(self, now: float, gap: float) -> None:
+        pose = self._pose
+        if pose is None:
+            return
+        try:
+            stride = self._stride(now, gap, pose)
+            name = self._walk.request.selection.controller.name if self._walk else ""
+            self._parts.actuation.drive(name, stride, pose, self._gait)
+        except ControllerFault as fault:
+            self._latch("controller", str(fault))
+        except LinkError as error:
+            self._lose(Finding(Severity.DISARM, "link", str(error)))
+        if self._walk is not None and self._state is RigState.RUNNING and self._walk.is_over:
+            self._end_run(RunState.FINISHED, "")
+            self._enter(after(self._state, Event.FINISH), "run finished", "info")
+
+    def _stride(self, now: float, gap: float, pose: Pose) -> Stride:
+        field = self._parts.field
+        if self._walk is None or self._state is not RigState.RUNNING:
+            return Stride(field.pivot, 0.0, field.heading)
+        return self._walk.step(now, gap, pose, field, self._parts.perception)
+
+    # Changes of state ----------------------------------------------------------------------------
+
+    def _require_fit(self) -> Pose:
+        """The pose, when nothing forbids current; raises `Refused` with the reason."""
+        for finding in self._findings:
+            if finding.severity >= Severity.HOLD:
+                raise Refused(finding.message)
+        if self._pose is None or self._parts.perception.tracking is not Tracking.LOCKED:
+            raise Refused("the robot is not seen; put it in the camera's view and wait for a lock")
+        for finding in self._findings:
+            if finding.code == "margin" and self._state is RigState.DISARMED:
+                raise Refused(f"{finding.message}; move it towards the centre first")
+        return self._pose
+
+    def _energise(self) -> None:
+        pose = self._require_fit()
+        if self._parts.actuation.stopped_from_outside:
+            raise Refused("stopped; reset it first")
+        self._agreed_at = self._driving_at = self._now
+        try:
+            self._parts.actuation.start(self._now, pose, self._standing_on(), self._gait)
+        except LinkError as error:
+            raise Refused(str(error)) from error
+
+    def _standing_on(self) -> Pivot:
+        return PIVOT_A if self._walk is None else self._walk.walker.sweep.pivot
+
+    def _stop_coils(self) -> None:
+        self._parts.actuation.stop(self._now)
+
+    def _hold(self, reason: str, severity: str, code: str = "hold") -> None:
+        state = after(self._state, Event.HOLD)
+        self._stop_coils()
+        self._enter(state, reason, severity, code)
+
+    def _lose(self, finding: Finding) -> None:
+        self._stop_coils()
+        self._end_run(RunState.ABORTED, finding.message)
+        self._enter(after(self._state, Event.DISARM), finding.message, "error", finding.code)
+
+    def _latch(self, code: str, reason: str) -> None:
+        self._stop_coils()
+        self._end_run(RunState.ABORTED, reason)
+        self._enter(after(self._state, Event.LATCH), reason, "error", code)
+
+    def _end_run(self, state: RunState, reason: str) -> None:
+        if self._walk is not None:
+            self._ended.append(Ended(self._walk.id, state, reason, self._walk.metrics()))
+            self._walk = None
+
+    def _enter(self, state: RigState, reason: str, severity: str, code: str = "") -> None:
+        self._state, self._reason = state, reason
+        self._log.append(Announcement(self._now, severity, code or state.value, reason))
+
+    def _remember_since(self, now: float) -> None:
+        self._since = {finding.code: self._since.get(finding.code, now) for finding in self._findings}
+
+    # What everybody may see ----------------------------------------------------------------------
+
+    def _snapshot(self, frame: Frame | None) -> Snapshot:
+        parts, telemetry, walk, pose = self._parts, self._telemetry, self._walk, self._pose
+        currents = telemetry.currents if telemetry is not None else ZERO
+        reference = walk.reference if walk is not None else None
+        return Snapshot(
+            tick=self._tick,
+            time=self._now,
+            captured_at=frame.captured_at if frame is not None else None,
+            rig=self._state,
+            reason=self._why(),
+            faults=tuple(Fault(f.code, f.message, self._since[f.code]) for f in self._findings),
+            simulated=parts.simulated,
+            pose=pose,
+            pose_sigma=self._sigma,
+            observation=parts.perception.observation,
+            tracking=parts.perception.tracking,
+            tracking_age=parts.perception.age,
+            command=parts.actuation.command,
+            reference=reference,
+            error=pose.distance_to(*reference) if pose is not None and reference is not None else None,
+            currents=currents,
+            measured_currents=telemetry.measured_currents if telemetry is not None else ZERO,
+            field=parts.coils.local_field(pose.x, pose.y, currents) if pose is not None else ZERO,
+            saturated=parts.actuation.saturated,
+            body_tilt=parts.body_tilt(abs(telemetry.elevation))
+            if self._state in ENERGISED and telemetry
+            else 0.0,
+            run=walk.progress(self._state is RigState.HELD) if walk is not None else None,
+            timing=self._timing.figures(),
+            link=parts.link.status,
+        )
+
+    def _why(self) -> str:
+        """The reason of the state; while disarmed, what stands in the way of arming."""
+        blocking = (finding.message for finding in self._findings if finding.severity >= Severity.HOLD)
+        return next(blocking, self._reason) if self._state is RigState.DISARMED else self._reason

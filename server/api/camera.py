@@ -1,0 +1,96 @@
+"""The camera: pictures for the page (acknowledged, newest only), for other viewers, and the calibration."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import AsyncIterator
+from typing import Any
+
+from fastapi import APIRouter, Response, WebSocket
+from fastapi.responses import StreamingResponse
+
+from server.api.access import ThePictures, TheRig
+from server.api.body import StrictRoute
+from server.api.problems import Problem, Rejected
+from server.api.sockets import Line, listen, serve
+from server.pictures import Pictures, View
+from server.streams import Cadence, StreamEnded
+
+router = APIRouter(tags=["camera"], route_class=StrictRoute)
+sockets = APIRouter()
+
+BOUNDARY = "picture"
+STREAM_PERIOD = 1.0 / 30.0
+"""Shortest time between two pictures of the MJPEG stream, s."""
+FIRST_PICTURE = 2.0
+"""How long a snapshot waits for the first frame, s."""
+
+
+@router.get("/camera")
+async def camera(rig: TheRig) -> dict[str, Any]:
+    """Size, rate and calibration: a pinhole with Brown-Conrady distortion, workspace (mm) to picture (px)."""
+    model = rig.camera_model
+    return {
+        "size": list(model.size),
+        "rate_Hz": rig.settings.camera.rate_Hz,
+        "model": {
+            "fx": model.fx,
+            "fy": model.fy,
+            "cx": model.cx,
+            "cy": model.cy,
+            "distortion": list(model.distortion),
+            "rotation": [value for row in model.rotation for value in row],
+            "translation_mm": [value * 1e3 for value in model.translation],
+            "body_height_mm": rig.body_height * 1e3,
+        },
+    }
+
+
+@router.get("/camera/snapshot.jpg", response_class=Response, responses={200: {"content": {"image/jpeg": {}}}})
+async def snapshot(pictures: ThePictures, view: View = "raw") -> Response:
+    """The newest picture."""
+    try:
+        async with asyncio.timeout(FIRST_PICTURE):
+            _, jpeg = await pictures.newer_than(None, view)
+    except (TimeoutError, StreamEnded):
+        raise Rejected(Problem(503, "No picture", "The camera has not delivered a frame.")) from None
+    return Response(jpeg, media_type="image/jpeg")
+
+
+@router.get("/camera/stream.mjpg", response_class=StreamingResponse)
+async def stream(pictures: ThePictures, view: View = "raw") -> StreamingResponse:
+    """An endless MJPEG stream for viewers other than the page."""
+    return StreamingResponse(
+        parts(pictures, view), media_type=f"multipart/x-mixed-replace; boundary={BOUNDARY}"
+    )
+
+
+async def parts(pictures: Pictures, view: View) -> AsyncIterator[bytes]:
+    cadence = Cadence(STREAM_PERIOD, asyncio.get_running_loop().time, asyncio.sleep)
+    index: int | None = None
+    while True:
+        await cadence.wait()
+        try:
+            index, jpeg = await pictures.newer_than(index, view)
+        except StreamEnded:
+            return
+        yield f"--{BOUNDARY}\r\nContent-Type: image/jpeg\r\nContent-Length: {len(jpeg)}\r\n\r\n".encode()
+        yield jpeg + b"\r\n"
+
+
+@sockets.websocket("/camera")
+async def pictures_to_page(socket: WebSocket, pictures: ThePictures, view: View = "raw") -> None:
+    """One JPEG, then the newest one after each message of the client, so that none waits on the way."""
+    await socket.accept()
+    ready = asyncio.Event()
+    ready.set()
+    await serve(socket, listen(socket, ready.set), send_pictures(Line(socket), pictures, view, ready))
+
+
+async def send_pictures(line: Line, pictures: Pictures, view: View, ready: asyncio.Event) -> None:
+    index: int | None = None
+    while True:
+        await ready.wait()
+        ready.clear()
+        index, jpeg = await pictures.newer_than(index, view)
+        await line.send_bytes(jpeg)

@@ -1,0 +1,162 @@
+"""What crosses the edge, in the lab's units: the one place where they become SI and SI becomes them.
+
+Every model is strict: unknown fields, NaN, infinity and numbers in quotes are refused.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Any
+
+from pydantic import BaseModel, ConfigDict, Field, JsonValue, StringConstraints
+
+from control.gait import Gait
+
+MM = 1e-3
+MT = 1e-3
+
+Name = Annotated[str, StringConstraints(min_length=1, max_length=80)]
+PathName = Annotated[str, StringConstraints(pattern=r"^[A-Za-z0-9][A-Za-z0-9 _.-]{0,59}$")]
+Label = Annotated[str, StringConstraints(max_length=200)]
+Tag = Annotated[str, StringConstraints(min_length=1, max_length=40)]
+Tags = Annotated[list[Tag], Field(max_length=20)]
+PointMM = Annotated[list[Annotated[float, Field(ge=-500.0, le=500.0)]], Field(min_length=2, max_length=2)]
+Passes = Annotated[
+    float,
+    Field(
+        gt=0.0,
+        le=1000.0,
+        title="Passes",
+        description="How often to walk the path.",
+        json_schema_extra={"unit": "1"},
+    ),
+]
+Duration = Annotated[
+    float,
+    Field(
+        gt=0.0,
+        le=86400.0,
+        title="Duration",
+        description="End after this time.",
+        json_schema_extra={"unit": "s"},
+    ),
+]
+
+
+class Edge(BaseModel):
+    model_config = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False, frozen=True)
+
+
+def angle(default: float, **limits: Any) -> Any:
+    return Field(default=default, json_schema_extra={"unit": "°"}, **limits)
+
+
+class GaitSettings(Edge):
+    """How the robot walks."""
+
+    sweep_deg: float = angle(
+        30.0, ge=1.0, le=350.0, title="Sweep", description="Turn about one pivot before it may change."
+    )
+    tilt_deg: float = angle(
+        25.0, ge=0.0, lt=60.0, title="Tilt", description="Elevation of the field that presses the pivot down."
+    )
+    field_mT: float = Field(
+        default=10.0, gt=0.0, lt=15.0, title="Field", description="Strength of the field at the robot.",
+        json_schema_extra={"unit": "mT"},
+    )  # fmt: skip
+    max_rate_deg_s: float = Field(
+        default=114.6, gt=0.0, lt=360.0, title="Fastest swing", description="Upper limit of the swing rate.",
+        json_schema_extra={"unit": "°/s"},
+    )  # fmt: skip
+    path_step_s: float = Field(
+        default=0.1, gt=0.0, lt=1.0, title="Path step",
+        description="Path time that passes every 0.1 s: 0.1 is the path's own speed, 0.2 twice that.",
+        json_schema_extra={"unit": "s"},
+    )  # fmt: skip
+
+    def to_si(self) -> Gait:
+        return Gait(
+            sweep=math.radians(self.sweep_deg),
+            tilt=math.radians(self.tilt_deg),
+            field=self.field_mT * MT,
+            max_rate=math.radians(self.max_rate_deg_s),
+            path_step=self.path_step_s,
+        )
+
+    @classmethod
+    def from_si(cls, gait: Gait) -> GaitSettings:
+        """Rounded to six digits, so that 30 degrees come back as 30."""
+        return cls(
+            sweep_deg=rounded(math.degrees(gait.sweep)),
+            tilt_deg=rounded(math.degrees(gait.tilt)),
+            field_mT=rounded(gait.field / MT),
+            max_rate_deg_s=rounded(math.degrees(gait.max_rate)),
+            path_step_s=rounded(gait.path_step),
+        )
+
+
+def rounded(value: float) -> float:
+    return float(f"{value:.6g}")
+
+
+class ChoiceBody(Edge):
+    """A controller or trajectory by name; parameters that are left out keep their defaults."""
+
+    name: Name
+    parameters: dict[str, JsonValue] = Field(default_factory=dict)
+
+
+class ChoiceChange(Edge):
+    """Another choice, or other parameters of the one in use; what is left out stays as it is."""
+
+    name: Name | None = None
+    parameters: dict[str, JsonValue] = Field(default_factory=dict)
+
+
+class SelectionBody(Edge):
+    """A whole selection."""
+
+    controller: ChoiceBody
+    trajectory: ChoiceBody
+    gait: GaitSettings
+
+
+class GaitChange(Edge):
+    """Some fields of the gait, checked together with the rest as `GaitSettings`."""
+
+    sweep_deg: float | None = None
+    tilt_deg: float | None = None
+    field_mT: float | None = None
+    max_rate_deg_s: float | None = None
+    path_step_s: float | None = None
+
+
+class SelectionChange(Edge):
+    """Some parts of a selection; the others stay as they are."""
+
+    controller: ChoiceChange = ChoiceChange()
+    trajectory: ChoiceChange = ChoiceChange()
+    gait: GaitChange = GaitChange()
+
+
+class RunBody(SelectionChange):
+    """A run to start; what is left out comes from the selection."""
+
+    passes: Passes = 1.0
+    duration_s: Duration | None = None
+    unattended: bool = False
+    label: Label = ""
+    tags: Tags = []
+
+
+class PreviewBody(ChoiceBody):
+    """A trajectory to look at."""
+
+
+class CustomPathBody(Edge):
+    """A path to save, as straight pieces through points."""
+
+    name: PathName
+    points_mm: Annotated[list[PointMM], Field(min_length=2, max_length=10_000)]
+    closed: bool = True
+    speed_mm_s: Annotated[float, Field(gt=0.0, le=50.0)] = 3.0

@@ -1,0 +1,32 @@
+"""What the page shows and the next run uses."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from fastapi import APIRouter
+
+from server.api.access import TheRig
+from server.api.body import StrictRoute
+from server.api.choices import select, selection_json
+from server.api.schemas import GaitSettings, SelectionBody
+
+router = APIRouter(tags=["selection"], route_class=StrictRoute)
+
+
+@router.get("/selection")
+async def selection(rig: TheRig) -> dict[str, Any]:
+    return selection_json(rig.selection)
+
+
+@router.put("/selection")
+async def replace(body: SelectionBody, rig: TheRig) -> dict[str, Any]:
+    """Choose; parameters that are left out get their defaults."""
+    await rig.select(select(body))
+    return selection_json(rig.selection)
+
+
+@router.get("/gait")
+async def gait_schema() -> dict[str, Any]:
+    """The JSON schema of the gait's fields, with units, ranges and defaults."""
+    return GaitSettings.model_json_schema()

@@ -1,0 +1,64 @@
+"""One client's WebSocket: sends with a time limit, and ends quietly when the client or the server goes."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from collections.abc import Callable, Coroutine
+from typing import Any
+
+from starlette.websockets import WebSocket, WebSocketDisconnect
+
+from server.streams import StreamEnded, until_first_ends
+
+log = logging.getLogger(__name__)
+
+SEND_TIMEOUT = 0.5
+"""A client that takes nothing for this long is dropped, s (faults.md row 25)."""
+
+
+class Line:
+    """Whole messages from several senders to one client."""
+
+    def __init__(self, socket: WebSocket) -> None:
+        self._socket = socket
+        self._turn = asyncio.Lock()
+
+    async def send_text(self, text: str) -> None:
+        async with asyncio.timeout(SEND_TIMEOUT), self._turn:
+            await self._socket.send_text(text)
+
+    async def send_bytes(self, data: bytes) -> None:
+        async with asyncio.timeout(SEND_TIMEOUT), self._turn:
+            await self._socket.send_bytes(data)
+
+
+def nothing() -> None:
+    """What most messages from a client mean."""
+
+
+async def listen(socket: WebSocket, heard: Callable[[], None] = nothing) -> None:
+    """Until the client goes; calls `heard` for each of its messages."""
+    while (await socket.receive())["type"] != "websocket.disconnect":
+        heard()
+
+
+async def serve(socket: WebSocket, *work: Coroutine[Any, Any, None]) -> None:
+    """Run the senders of an accepted socket until the client goes, stops reading, or the server ends."""
+    try:
+        await until_first_ends(*work)
+    except WebSocketDisconnect:
+        return
+    except TimeoutError:
+        log.info("a client of %s did not read for %g s and was dropped", socket.url.path, SEND_TIMEOUT)
+    except StreamEnded:
+        await goodbye(socket)
+
+
+async def goodbye(socket: WebSocket) -> None:
+    """The server is going down: say so, unless the client has gone first."""
+    try:
+        async with asyncio.timeout(SEND_TIMEOUT):
+            await socket.close(1012, "the server is going down")
+    except (TimeoutError, RuntimeError, WebSocketDisconnect):
+        log.debug("a client had gone before the farewell")

@@ -1,0 +1,48 @@
+"""Is it alive, and what is it doing."""
+
+from __future__ import annotations
+
+from importlib.metadata import version
+from typing import Any
+
+from fastapi import APIRouter
+
+from server.api import ticks
+from server.api.access import TheRig
+from server.api.body import StrictRoute
+
+router = APIRouter(tags=["state"], route_class=StrictRoute)
+
+VERSION = version("pivotrig")
+
+
+@router.get("/health")
+async def health() -> dict[str, str]:
+    return {"status": "ok", "version": VERSION}
+
+
+@router.get("/state")
+async def state(rig: TheRig) -> dict[str, Any]:
+    """One snapshot of everything."""
+    return ticks.state(rig.snapshot)
+
+
+@router.get("/rig")
+async def rig_file(rig: TheRig) -> dict[str, Any]:
+    """The rig file's values, in the lab's units."""
+    return rig.settings.to_public()
+
+
+@router.get("/events")
+async def events(rig: TheRig) -> dict[str, Any]:
+    """What happened in this session, newest first."""
+    listed = [
+        {
+            "time_s": ticks.number(event.time),
+            "severity": str(event.severity),
+            "code": event.code,
+            "message": event.message,
+        }
+        for event in reversed(rig.events)
+    ]
+    return {"events": listed, "next": None}

@@ -1,0 +1,137 @@
+"""The web application around a rig: REST, sockets, the scene and the dashboard's files, behind one door."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import AsyncIterator, Collection
+from contextlib import asynccontextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from fastapi import APIRouter, FastAPI, WebSocket
+from starlette.responses import FileResponse
+
+import web
+from server.api import (
+    actions,
+    camera,
+    controllers,
+    problems,
+    runs,
+    selection,
+    state,
+    telemetry,
+    trajectories,
+)
+from server.api.schemas import MM
+from server.api.ticks import TickText
+from server.door import Door
+from server.fresh_files import ALWAYS_ASK, FreshFiles
+from server.pictures import Pictures
+from server.scene import SceneGeometry
+from server.scene_feed import SceneFeed
+from server.scene_page import scene_page
+
+if TYPE_CHECKING:
+    from server.rig import Rig
+
+log = logging.getLogger(__name__)
+
+WEB_FOLDER = Path(web.__file__).parent
+DOCS_PAGE = WEB_FOLDER / "vendor" / "swagger" / "docs.html"
+PREFIX = "/api/v1"
+PROBLEM_SCHEMA = {
+    "description": "RFC 9457 problem document",
+    "content": {"application/problem+json": {"schema": {"type": "object"}}},
+}
+RESPONSES: dict[int | str, dict[str, Any]] = dict.fromkeys((409, 422), PROBLEM_SCHEMA)
+
+
+def create_app(rig: Rig, hosts: Collection[str] = ()) -> FastAPI:
+    """The application of one rig. hosts: names it may be asked by, beside localhost and its address."""
+    app = FastAPI(
+        title="pivotrig",
+        version=state.VERSION,
+        summary="See, control and record a magnetic pivot walker.",
+        docs_url=None,
+        redoc_url=None,
+        lifespan=lifespan,
+    )
+    app.state.rig = rig
+    app.state.pictures = Pictures(rig)
+    app.state.tick_text = TickText()
+    app.state.scene = SceneFeed(rig, scene_geometry(rig))
+    app.add_middleware(Door, hosts=hosts)
+    problems.install(app)
+    add_routes(app)
+    return app
+
+
+@asynccontextmanager
+async def lifespan(app: FastAPI) -> AsyncIterator[None]:
+    """The rig stops before everything else does, and whatever else fails: its stop zeroes the coils."""
+    rig, scene = app.state.rig, app.state.scene
+    await rig.start()
+    try:
+        await start_scene(scene)
+        yield
+    finally:
+        try:
+            await rig.stop()
+        finally:
+            end_streams(app)
+            await scene.stop()
+            app.state.pictures.close()
+
+
+async def start_scene(scene: SceneFeed) -> None:
+    try:
+        await scene.start()
+    except Exception:  # a rig without a 3D picture is still a rig (faults.md, rule 8)
+        log.exception("the 3D scene could not be started; everything else goes on without it")
+
+
+def end_streams(app: FastAPI) -> None:
+    """End all open streams, so that a server that wants to stop need not wait for its viewers."""
+    app.state.rig.updates.close()
+    app.state.rig.announcements.close()
+
+
+def scene_geometry(rig: Rig) -> SceneGeometry:
+    robot = rig.settings.robot
+    return SceneGeometry(
+        coils=rig.coils,
+        workspace=rig.coils.workspace,
+        length=robot.length_mm * MM,
+        width=robot.body_width_mm * MM,
+        height=robot.body_height_mm * MM,
+    )
+
+
+def add_routes(app: FastAPI) -> None:
+    api = APIRouter(prefix=PREFIX, responses=RESPONSES)
+    for room in (state, selection, actions, controllers, trajectories, runs, camera, telemetry):
+        api.include_router(room.router)
+    api.include_router(camera.sockets)
+    app.include_router(api)
+    app.add_api_route("/", page, include_in_schema=False)
+    app.add_api_route("/docs", docs, include_in_schema=False)
+    app.add_api_websocket_route("/scene", scene_socket)
+    app.add_route("/scene/", scene_page, include_in_schema=False)
+    app.mount("/static", FreshFiles(directory=WEB_FOLDER))
+
+
+async def page() -> FileResponse:
+    return FileResponse(WEB_FOLDER / "index.html", headers=ALWAYS_ASK)
+
+
+async def docs() -> FileResponse:
+    return FileResponse(DOCS_PAGE, headers=ALWAYS_ASK)
+
+
+async def scene_socket(socket: WebSocket) -> None:
+    feed: SceneFeed = socket.app.state.scene
+    if feed.scene is None:
+        await socket.close(1013, "the 3D scene is not running")
+        return
+    await feed.bridge.serve(socket)

@@ -1,0 +1,75 @@
+"""The camera's newest picture as JPEG, encoded once for everybody who looks at the same view of it."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from typing import TYPE_CHECKING, Literal
+
+from control.model import Frame
+from server.settings import MM
+from vision.encoding import encode_jpeg
+from vision.overlay import Drawing, draw_overlay
+
+if TYPE_CHECKING:
+    from server.rig import Rig
+
+View = Literal["raw", "overlay", "mask"]
+
+
+class Pictures:
+    """Encodes on one thread of its own, so that any number of viewers costs at most one core's share."""
+
+    def __init__(self, rig: Rig) -> None:
+        self._rig = rig
+        self._thread = ThreadPoolExecutor(1, thread_name_prefix="jpeg")
+        self._made: dict[View, tuple[int, asyncio.Future[bytes]]] = {}
+
+    def close(self) -> None:
+        self._thread.shutdown(cancel_futures=True)
+
+    async def newer_than(self, index: int | None, view: View) -> tuple[int, bytes]:
+        """The newest picture whose frame is not `index`, and its frame's index; waits for one.
+
+        Raises StreamEnded when the rig has stopped.
+        """
+        async with self._rig.updates.subscribe() as ticks:
+            while (frame := self._rig.frame) is None or frame.index == index:
+                await ticks.get()
+        return frame.index, await self.encoded(frame, view)
+
+    async def encoded(self, frame: Frame, view: View) -> bytes:
+        index, made = self._made.get(view, (None, None))
+        if made is None or index != frame.index:
+            made = self._start(frame, view)
+            self._made[view] = (frame.index, made)
+        return await asyncio.shield(made)
+
+    def _start(self, frame: Frame, view: View) -> asyncio.Future[bytes]:
+        draw = {"raw": self._raw, "overlay": self._overlay, "mask": self._mask}[view]
+        return asyncio.get_running_loop().run_in_executor(self._thread, draw(frame))
+
+    def _raw(self, frame: Frame) -> Callable[[], bytes]:
+        return lambda: encode_jpeg(frame.image)
+
+    def _mask(self, frame: Frame) -> Callable[[], bytes]:
+        return lambda: encode_jpeg(self._rig.tracker.mask(frame.image))
+
+    def _overlay(self, frame: Frame) -> Callable[[], bytes]:
+        """What to draw is gathered on the event loop, where it holds still."""
+        drawing, model = self._drawing(), self._rig.camera_model
+        return lambda: encode_jpeg(draw_overlay(frame.image, model, drawing))
+
+    def _drawing(self) -> Drawing:
+        rig, snapshot = self._rig, self._rig.snapshot
+        return Drawing(
+            length=rig.settings.robot.length_mm * MM,
+            body_height=rig.body_height,
+            pose=snapshot.pose,
+            pivot=snapshot.command.pivot,
+            observation=snapshot.observation,
+            reference=rig.reference_points(),
+            trail=rig.trail(),
+            target=snapshot.reference,
+        )

@@ -1,0 +1,224 @@
+"""The rig file: one lab's rig in one TOML file, lab units in the names, validated whole.
+
+The defaults are the paper's rig, simulated (paper, section 6; what is assumed there is assumed here).
+"""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+
+MM = 1e-3
+MS = 1e-3
+
+Positive = Annotated[float, Field(gt=0.0)]
+Sigma = Annotated[float, Field(gt=0.0, le=1000.0)]
+PerCoil = Annotated[list[Positive], Field(min_length=3, max_length=3)]
+
+
+class RigFileError(ValueError):
+    """A rig file that cannot be used; the text says where and why."""
+
+
+class Section(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+
+
+class Robot(Section):
+    """length: between the two pivots; the body is what the camera sees."""
+
+    length_mm: Annotated[float, Field(gt=0.0, le=100.0)] = 10.0
+    body_length_mm: Annotated[float, Field(gt=0.0, le=100.0)] = 10.0
+    body_width_mm: Annotated[float, Field(gt=0.0, le=100.0)] = 4.0
+    body_height_mm: Annotated[float, Field(ge=0.0, le=50.0)] = 3.0
+    lift_ratio: Annotated[float, Field(gt=0.0, le=1000.0)] = 3.2
+    """2 m B / (W L): magnet torque over weight; decides how far the free end lifts."""
+
+
+class Coil(Section):
+    diameter_mm: Positive
+    separation_mm: Positive
+    turns: Annotated[int, Field(gt=0)]
+    resistance_ohm: Positive
+    inductance_mH: Positive
+
+
+class Coils(Section):
+    """Outer diameters and separations are the paper's; turns, resistances and inductances are assumed."""
+
+    x: Coil = Coil(diameter_mm=390, separation_mm=240, turns=314, resistance_ohm=2.5, inductance_mH=125)
+    y: Coil = Coil(diameter_mm=305, separation_mm=190, turns=248, resistance_ohm=2.0, inductance_mH=55)
+    z: Coil = Coil(diameter_mm=225, separation_mm=110, turns=154, resistance_ohm=1.5, inductance_mH=14)
+    supply_V: Annotated[float, Field(gt=0.0, le=60.0)] = 24.0
+    allocation: Literal["local", "centre"] = "local"
+    """local: field and tilt hold over the whole plate; centre: the paper's, exact at the centre only."""
+
+
+class LimitsSection(Section):
+    current_A: PerCoil = [8.0, 8.0, 8.0]
+    field_mT: Annotated[float, Field(gt=0.0, le=50.0)] = 15.0
+    rate_deg_s: Annotated[float, Field(gt=0.0, le=3600.0)] = 360.0
+    workspace_mm: Annotated[float, Field(gt=0.0, le=1000.0)] = 120.0
+    soft_margin_mm: Annotated[float, Field(ge=0.0, le=100.0)] = 2.0
+    """How far outside the workspace the centre may be before the page warns."""
+    hard_margin_mm: Annotated[float, Field(ge=0.0, le=100.0)] = 8.0
+    """How far outside the workspace the coils are switched off."""
+
+    @model_validator(mode="after")
+    def _margins_are_ordered(self) -> LimitsSection:
+        if self.soft_margin_mm > self.hard_margin_mm:
+            raise ValueError(
+                f"soft_margin_mm ({self.soft_margin_mm}) must not exceed hard_margin_mm ({self.hard_margin_mm})"
+            )
+        return self
+
+
+class CameraSection(Section):
+    """Where the pictures come from, and a camera that looks straight down until it is calibrated."""
+
+    uri: str = "sim://"
+    size_px: tuple[Annotated[int, Field(ge=64, le=8192)], Annotated[int, Field(ge=64, le=8192)]] = (640, 480)
+    rate_Hz: Annotated[float, Field(ge=1.0, le=500.0)] = 60.0
+    height_mm: Annotated[float, Field(gt=0.0, le=10_000.0)] = 350.0
+    picture_height_mm: Annotated[float, Field(gt=0.0, le=10_000.0)] = 130.0
+    """Length on the plate that fills the picture's height."""
+    tilt_deg: tuple[Annotated[float, Field(ge=-30, le=30)], Annotated[float, Field(ge=-30, le=30)]] = (
+        1.5,
+        0.0,
+    )
+    distortion: tuple[float, float, float, float, float] = (-0.12, 0.02, 0.0, 0.0, 0.0)
+
+
+class LinkSection(Section):
+    port: str = "sim://"
+    baud: Annotated[int, Field(ge=9600, le=2_000_000)] = 500_000
+    dead_man_ms: Annotated[int, Field(ge=20, le=1000)] = 200
+    time_to_live_ms: Annotated[int, Field(ge=20, le=1000)] = 150
+    """Of one drive command: nine frames at 60 Hz."""
+    ramp_ms: Annotated[int, Field(ge=1, le=1000)] = 50
+    """Elevation ramp at a pivot switch; the heading is held meanwhile."""
+    field_ramp_ms: Annotated[int, Field(ge=1, le=10_000)] = 300
+    """From zero to 10 mT at arming."""
+
+
+class VisionSection(Section):
+    """Which colour is the robot (hue 0..360 degrees, wrapping through 0; the rest 0..255) and how big it is."""
+
+    hue_deg: tuple[Annotated[float, Field(ge=0, le=360)], Annotated[float, Field(ge=0, le=360)]] = (
+        340.0,
+        20.0,
+    )
+    saturation: tuple[Annotated[int, Field(ge=0, le=255)], Annotated[int, Field(ge=0, le=255)]] = (110, 255)
+    value: tuple[Annotated[int, Field(ge=0, le=255)], Annotated[int, Field(ge=0, le=255)]] = (60, 255)
+    area_mm2: tuple[Positive, Positive] = (12.0, 90.0)
+    heading_hint_deg: Annotated[float, Field(ge=-360, le=360)] = 90.0
+    """Which way the robot is put down: tells its two ends apart at the first sighting."""
+
+
+class EstimatorSection(Section):
+    """Standard deviations of the filter's model and of one sighting."""
+
+    measured_position_mm: Sigma = 0.04
+    measured_heading_deg: Sigma = 0.35
+    drift_position_mm: Sigma = 0.2
+    """Per root second at rest."""
+    drift_heading_deg: Sigma = 2.0
+    slip_mm: Sigma = 0.5
+    """Per pivot switch."""
+    swing_share: Annotated[float, Field(gt=0.0, le=1.0)] = 0.12
+    """Of the angle that the field turns, once it pulls the body along."""
+    loose_share: Annotated[float, Field(gt=0.0, le=2.0)] = 0.6
+    """The same while the field may still be taking up the play after a reversal."""
+    actuation_delay_ms: Annotated[float, Field(ge=0.0, le=200.0)] = 1.0
+    backlash_deg: Annotated[float, Field(ge=0.0, le=20.0)] = 0.0
+    """First guess of the play between field and body; it is identified while walking."""
+
+
+class SimulationSection(Section):
+    """The simulated rig; only read where the camera or the port is simulated."""
+
+    plant: Literal["slip", "noslip"] = "slip"
+    seed: Annotated[int, Field(ge=0, le=2**31 - 1)] = 1
+    board: str = Field(default="twin", pattern=r"^(twin|tcp://\S+)$")
+    """twin: the board's twin in this process; tcp://HOST:PORT: another board behind its lock-step port."""
+    latency_ms: Annotated[float, Field(ge=0.0, le=1000.0)] = 35.0
+    noise: Annotated[float, Field(ge=0.0, le=50.0)] = 3.0
+    """Grey levels."""
+    blur_px: Annotated[float, Field(ge=0.0, le=10.0)] = 0.7
+    start_x_mm: Annotated[float, Field(ge=-60.0, le=60.0)] = 0.0
+    start_y_mm: Annotated[float, Field(ge=-60.0, le=60.0)] = -42.0
+    start_heading_deg: Annotated[float, Field(ge=-360.0, le=360.0)] = 90.0
+
+
+class RigFile(Section):
+    """One rig."""
+
+    name: Annotated[str, Field(min_length=1, max_length=80)] = "The paper's rig"
+    robot: Robot = Robot()
+    coils: Coils = Coils()
+    limits: LimitsSection = LimitsSection()
+    camera: CameraSection = CameraSection()
+    link: LinkSection = LinkSection()
+    vision: VisionSection = VisionSection()
+    estimator: EstimatorSection = EstimatorSection()
+    simulation: SimulationSection = SimulationSection()
+
+    @property
+    def is_simulated(self) -> bool:
+        return self.camera.uri.startswith("sim://")
+
+    @model_validator(mode="after")
+    def _camera_and_port_share_a_world(self) -> RigFile:
+        if self.link.port.startswith("sim://") and not self.is_simulated:
+            raise ValueError(
+                'a simulated port (link.port) needs the simulated camera (camera.uri = "sim://")'
+            )
+        return self
+
+    def to_public(self) -> dict[str, Any]:
+        """The values as the outside sees them."""
+        return {**self.model_dump(mode="json"), "simulated": self.is_simulated}
+
+    def with_simulation(self, **changes: Any) -> RigFile:
+        """The same rig with other values in its simulation section, validated."""
+        whole = self.model_dump(mode="json")
+        whole["simulation"] = {**whole["simulation"], **changes}
+        return RigFile.model_validate(whole)
+
+    def as_simulated(self) -> RigFile:
+        """The same rig with its camera and port simulated."""
+        whole = self.model_dump(mode="json")
+        whole["camera"]["uri"] = whole["link"]["port"] = "sim://"
+        return RigFile.model_validate(whole)
+
+
+def load_rig_file(path: Path) -> RigFile:
+    """Read and validate a rig file; raises `RigFileError` naming every wrong value."""
+    try:
+        values = tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise RigFileError(f"cannot read the rig file {path}: {error.strerror or error}") from error
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise RigFileError(f"the rig file {path} is not TOML: {error}") from error
+    try:
+        return RigFile.model_validate(values)
+    except ValidationError as error:
+        raise RigFileError(f"the rig file {path} cannot be used:\n{in_words(error)}") from error
+
+
+def in_words(error: ValidationError) -> str:
+    """One line for each wrong value: where it is, what is wrong with it, what was given."""
+    lines = []
+    for problem in error.errors(include_url=False):
+        where = ".".join(str(part) for part in problem["loc"]) or "the whole file"
+        given = "" if problem["type"] in ("missing", "extra_forbidden") else f" (given: {problem['input']!r})"
+        lines.append(f"  {where}: {problem['msg']}{given}")
+    return "\n".join(lines)
+
+
+def radians(pair: tuple[float, float]) -> tuple[float, float]:
+    return math.radians(pair[0]), math.radians(pair[1])

@@ -1,0 +1,72 @@
+"""A real server process with the simulated rig, and a real browser that looks at it."""
+
+from __future__ import annotations
+
+import contextlib
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from dashboard_visit import PATIENCE, OpenTab, ServedRig, Visit
+from playwright.sync_api import Browser, expect, sync_playwright
+
+CHROMIUM_ARGS = ("--no-sandbox", "--use-angle=gl-egl", "--ignore-gpu-blocklist")
+
+expect.set_options(timeout=PATIENCE * 1e3)
+
+
+@pytest.fixture(scope="session")
+def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[ServedRig]:
+    rig = ServedRig(tmp_path_factory.mktemp("rig-data"))
+    rig.start()
+    yield rig
+    rig.stop()
+
+
+@pytest.fixture
+def own_server(tmp_path: Path) -> Iterator[ServedRig]:
+    """A server that the test may kill."""
+    rig = ServedRig(tmp_path)
+    rig.start()
+    yield rig
+    rig.stop()
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[Browser]:
+    chromium = shutil.which("chromium") or shutil.which("google-chrome")
+    if chromium is None:
+        pytest.fail("the browser tests need Chromium: apt-get install chromium")
+    with sync_playwright() as playwright:
+        started = playwright.chromium.launch(executable_path=chromium, args=list(CHROMIUM_ARGS))
+        yield started
+        started.close()
+
+
+@pytest.fixture
+def open_tab(browser: Browser) -> Iterator[OpenTab]:
+    """Opens a page of a server in a window of a size; everything is closed afterwards."""
+    with contextlib.ExitStack() as stack:
+
+        def open_tab(url: str, width: int = 1440, height: int = 900) -> Visit:
+            context = browser.new_context(viewport={"width": width, "height": height})
+            stack.callback(context.close)
+            page = context.new_page()
+            page.set_default_timeout(PATIENCE * 1e3)
+            visit = Visit(page)
+            visit.watch(context)
+            page.goto(url)
+            return visit
+
+        yield open_tab
+
+
+@pytest.fixture
+def dashboard(served: ServedRig, open_tab: OpenTab) -> Iterator[Visit]:
+    """A first visit to a rig at rest; at the end nothing has left the server and nobody has complained."""
+    served.rest()
+    visit = open_tab(served.url)
+    yield visit
+    assert visit.foreign(served.url) == []
+    assert visit.complaints == []

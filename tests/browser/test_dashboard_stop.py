@@ -1,0 +1,61 @@
+"""STOP, and the two deliberate acts that lead back."""
+
+from __future__ import annotations
+
+import pytest
+from dashboard_visit import ServedRig, Visit, eventually
+from playwright.sync_api import expect
+
+pytestmark = pytest.mark.exclusive
+
+
+def arm(visit: Visit) -> None:
+    visit.page.get_by_role("button", name="Arm", exact=True).click()
+    expect(visit.page.get_by_role("status")).to_contain_text("armed")
+
+
+@pytest.mark.parametrize("how", ["Escape", "Space", "click"])
+def test_stop_leads_to_a_fault_that_only_reset_and_arm_leave(dashboard: Visit, how: str) -> None:
+    page = dashboard.page
+    arm(dashboard)
+    if how == "click":
+        page.get_by_role("button", name="STOP", exact=True).click()
+    else:
+        page.keyboard.press(how)
+    expect(page.get_by_role("status")).to_contain_text("fault")
+    expect(page.get_by_role("status")).to_contain_text("stop")
+    expect(page.get_by_role("button", name="Arm", exact=True)).to_have_count(0)
+    page.get_by_role("button", name="Reset", exact=True).click()
+    expect(page.get_by_role("status")).to_contain_text("disarmed")
+    expect(page.get_by_role("button", name="Arm", exact=True)).to_be_enabled()
+
+
+def test_escape_stops_while_the_scene_has_the_focus(dashboard: Visit) -> None:
+    page = dashboard.page
+    arm(dashboard)
+    scene = page.get_by_title("3D scene of coils, field and robot")
+    expect(page.get_by_text("Loading the 3D scene")).to_be_hidden()
+    scene.click()
+    page.keyboard.press("Escape")
+    expect(page.get_by_role("status")).to_contain_text("fault")
+
+
+def test_space_types_inside_a_text_field_and_stops_outside(dashboard: Visit, served: ServedRig) -> None:
+    page = dashboard.page
+    sweep = page.get_by_role("textbox", name="Sweep")
+    sweep.fill("25")
+    sweep.press("Space")
+    expect(sweep).to_have_value("25 ")
+    assert served.ask("/state")["rig"] == "disarmed"
+    page.get_by_role("button", name="Arm", exact=True).focus()
+    page.keyboard.press("Space")
+    eventually(lambda: served.ask("/state")["rig"] == "fault", "the space bar stops and presses nothing")
+
+
+def test_the_question_mark_shows_the_keys(dashboard: Visit) -> None:
+    page = dashboard.page
+    expect(page.get_by_role("status")).to_contain_text("disarmed")
+    page.keyboard.press("?")
+    expect(page.get_by_role("dialog")).to_contain_text("Escape")
+    page.get_by_role("button", name="Close").click()
+    expect(page.get_by_role("dialog")).to_be_hidden()

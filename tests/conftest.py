@@ -1,0 +1,40 @@
+"""What every test is held to: no thread is left behind. And how many repetitions a test takes."""
+
+from __future__ import annotations
+
+import os
+import threading
+import time
+from collections.abc import Iterator
+
+import pytest
+
+GRACE = 2.0
+"""A thread that is ending may take this long, s."""
+
+
+@pytest.fixture(autouse=True)
+def no_thread_is_left_behind(request: pytest.FixtureRequest) -> Iterator[None]:
+    before = set(threading.enumerate())
+    yield
+    if request.node.get_closest_marker("leaves_threads"):
+        return
+    deadline = time.monotonic() + GRACE
+    while (left := _alive(before)) and time.monotonic() < deadline:
+        time.sleep(0.01)
+    assert not left, f"threads left behind: {left}"
+
+
+def _alive(before: set[threading.Thread]) -> list[threading.Thread]:
+    return [thread for thread in threading.enumerate() if thread not in before and not _is_shared(thread)]
+
+
+def _is_shared(thread: threading.Thread) -> bool:
+    """asyncio's default executor and playwright's driver live as long as the session."""
+    return thread.name.startswith(("asyncio_", "AnyIO worker thread", "Dummy"))
+
+
+@pytest.fixture(scope="session")
+def full() -> bool:
+    """Whether the stated numbers of repetitions are asked for (`make test-full`)."""
+    return os.environ.get("PIVOTRIG_FULL") == "1"

@@ -1,0 +1,77 @@
+"""A link and the board that it speaks to, on one simulated clock."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from itertools import count
+
+from control.link.conversion import Configuration, DriveCommand, Telemetry
+from control.link.port import Link
+from control.simulation.board import TwinBoard, Winding
+
+CONFIGURATION = Configuration(
+    current_limits=(8.0, 8.0, 8.0),
+    dead_man=0.2,
+    ramp=0.05,
+    field_slew=0.010 / 0.3,
+    resistances=(2.5, 2.0, 1.5),
+    inductances=(0.125, 0.055, 0.014),
+    supply=24.0,
+    max_field=0.02,
+    max_rate=2.0,
+    max_tilt=math.radians(60.0),
+)
+ALLOCATION = ((800.0, 0.0, 0.0), (0.0, 800.0, 0.0), (0.0, 0.0, 800.0))
+COMMAND = DriveCommand(1, 0.0, 0.0, math.radians(25.0), 0.010, ALLOCATION, 0.12)
+TICK = 16
+_names = count()
+
+
+class Rig:
+    """Ticks like the loop: the board runs on for a frame, then the link is polled."""
+
+    def __init__(self) -> None:
+        name = f"link-{next(_names)}"
+        windings = (Winding(2.5, 0.125), Winding(2.0, 0.055), Winding(1.5, 0.014))
+        self.now = 0.0
+        self.board = TwinBoard(name, windings, 24.0, boot_id=40)
+        self.link = Link(f"sim://{name}", 500000, CONFIGURATION, lambda: self.now)
+
+    def tick(self, times: int = 1) -> Telemetry | None:
+        """The last poll's report."""
+        report = None
+        for _ in range(times):
+            self.board.advance(TICK)
+            self.now += TICK * 1e-3
+            report = self.link.poll()
+        return report
+
+    def ready(self) -> Rig:
+        self.link.open()
+        self.tick(6)
+        assert self.link.is_ready, self.link.reason
+        return self
+
+    def driving(self) -> Rig:
+        self.ready()
+        self.link.drive(replace(COMMAND, start_heading=0.0))
+        self.drive_on(10)
+        return self
+
+    def drive_on(self, times: int) -> None:
+        for _ in range(times):
+            self.tick()
+            self.link.drive(COMMAND)
+
+
+@contextmanager
+def rig() -> Iterator[Rig]:
+    bench = Rig()
+    try:
+        yield bench
+    finally:
+        bench.link.close()
+        bench.board.close()

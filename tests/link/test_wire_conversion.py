@@ -1,0 +1,140 @@
+"""SI to the wire and back: what fits arrives within a rounding, what is not allowed is refused."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from link_bench import ALLOCATION, COMMAND, CONFIGURATION
+
+from control.link.conversion import (
+    Configuration,
+    DriveCommand,
+    LinkError,
+    configure_message,
+    drive_message,
+    heading_from,
+    phase,
+    phase_rate,
+)
+from control.model import wrap
+
+BAD = (math.nan, math.inf, -math.inf)
+
+
+@given(st.floats(-1000.0, 1000.0))
+@settings(deadline=None)
+def test_a_heading_survives_the_wire_up_to_whole_turns(heading: float) -> None:
+    back = heading_from(phase(heading))
+    assert -math.pi <= back < math.pi
+    assert abs(wrap(back - heading)) < 1e-6
+
+
+@given(st.floats(-20.0, 20.0))
+@settings(deadline=None)
+def test_a_rate_survives_the_wire(rate: float) -> None:
+    assert phase_rate(rate) * 1e3 / 2**32 * math.tau == pytest.approx(rate, abs=1e-6)
+
+
+def test_a_drive_in_the_units_of_the_wire() -> None:
+    message = drive_message(replace(COMMAND, rate=-1.0, heading_goal=-math.pi / 2, pivot=-1), CONFIGURATION)
+    assert message.flags == 0
+    assert message.pivot == -1
+    assert message.rate == -round(2**32 / math.tau / 1000)
+    assert message.heading_goal == 3 * 2**30
+    assert message.tilt == round(65536 * 25 / 360)
+    assert message.field == 10000
+    assert message.allocation == (13107, 0, 0, 0, 13107, 0, 0, 0, 13107)
+    assert message.time_to_live == 120
+
+
+def test_a_start_heading_is_the_arm_edge() -> None:
+    message = drive_message(replace(COMMAND, start_heading=math.pi), CONFIGURATION)
+    assert message.flags == 1
+    assert message.start_heading == 2**31
+
+
+@pytest.mark.parametrize(
+    ("name", "allowed", "refused"),
+    [
+        ("rate", (-2.0, 0.0, 2.0), (-2.001, 2.001)),
+        ("tilt", (0.0, math.radians(60)), (-0.001, math.radians(60.1))),
+        ("field", (0.0, 0.02), (-1e-6, 0.0201)),
+        ("time_to_live", (0.001, 1.0), (0.0, -0.1, 1.01)),
+        ("heading_goal", (-500.0, 500.0), (1e7,)),
+        ("start_heading", (-500.0, 500.0), (-1e7,)),
+    ],
+)
+def test_a_drive_value_is_refused_outside_its_range_and_when_it_is_no_number(
+    name: str, allowed: tuple[float, ...], refused: tuple[float, ...]
+) -> None:
+    for value in allowed:
+        drive_message(replace(COMMAND, **{name: value}), CONFIGURATION)
+    for value in (*refused, *BAD):
+        with pytest.raises(LinkError, match=f"{name} is .* allowed is"):
+            drive_message(replace(COMMAND, **{name: value}), CONFIGURATION)
+
+
+@pytest.mark.parametrize("pivot", [0, 2, -2, math.nan])
+def test_a_pivot_is_one_or_minus_one(pivot: float) -> None:
+    with pytest.raises(LinkError, match="pivot"):
+        drive_message(replace(COMMAND, pivot=pivot), CONFIGURATION)
+
+
+@pytest.mark.parametrize("value", [2000.0, -2000.0, *BAD])
+@pytest.mark.parametrize("place", range(9))
+def test_an_allocation_entry_that_does_not_fit_is_refused(place: int, value: float) -> None:
+    rows = [list(row) for row in ALLOCATION]
+    rows[place // 3][place % 3] = value
+    with pytest.raises(LinkError, match="allocation"):
+        drive_message(replace(COMMAND, allocation=tuple(map(tuple, rows))), CONFIGURATION)
+
+
+@pytest.mark.parametrize("shape", [(), ((1.0, 0.0, 0.0),), ((1.0, 0.0),) * 3, (1.0, 2.0, 3.0)])
+def test_an_allocation_of_another_shape_is_refused(shape: tuple) -> None:
+    with pytest.raises(LinkError, match="3 rows"):
+        drive_message(replace(COMMAND, allocation=shape), CONFIGURATION)
+
+
+@given(
+    st.builds(
+        DriveCommand,
+        st.sampled_from((1, -1)),
+        *[st.floats()] * 4,
+        st.just(ALLOCATION),
+        st.floats(),
+        st.none() | st.floats(),
+    )
+)
+@settings(max_examples=300, deadline=None, derandomize=True)
+def test_no_float_gets_through_that_the_limits_forbid(command: DriveCommand) -> None:
+    try:
+        message = drive_message(command, CONFIGURATION)
+    except LinkError:
+        return
+    limits = configure_message(CONFIGURATION)
+    assert abs(message.rate) <= limits.max_rate
+    assert message.tilt <= limits.max_tilt
+    assert message.field <= limits.max_field
+    assert 1 <= message.time_to_live <= 1000
+
+
+def test_a_configuration_in_the_units_of_the_wire() -> None:
+    message = configure_message(CONFIGURATION)
+    assert message.current_limits == (8000, 8000, 8000)
+    assert (message.dead_man, message.ramp) == (200, 50)
+    assert message.field_slew == round(256 * 10000 / 300)
+    assert message.resistances == (2500, 2000, 1500)
+    assert message.inductances == (12500, 5500, 1400)
+    assert (message.supply, message.max_field, message.max_tilt) == (24000, 20000, 10923)
+
+
+@pytest.mark.parametrize("name", Configuration.__dataclass_fields__)
+@pytest.mark.parametrize("value", [0.0, -1.0, *BAD])
+def test_a_configuration_value_that_is_not_positive_is_refused_by_name(name: str, value: float) -> None:
+    given_value = (8.0, value, 8.0) if isinstance(getattr(CONFIGURATION, name), tuple) else value
+    with pytest.raises(LinkError, match=name):
+        configure_message(replace(CONFIGURATION, **{name: given_value}))

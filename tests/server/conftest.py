@@ -1,0 +1,81 @@
+"""A real server on a free port, and the simulated rig behind it, for as long as a module of tests needs them."""
+
+import asyncio
+import contextlib
+import logging
+
+import httpx
+import pytest
+import uvicorn
+from websockets.asyncio.client import connect
+
+from server.app import create_app
+from server.assembly import build_machine
+from server.rig import Rig
+from server.settings import RigFile
+
+
+@pytest.fixture(scope="session")
+def anyio_backend():
+    return "asyncio"
+
+
+class Served:
+    """Where an application is served. server: to be told to end."""
+
+    def __init__(self, server):
+        self.server = server
+        self.port = server.servers[0].sockets[0].getsockname()[1]
+        self.host = f"127.0.0.1:{self.port}"
+        self.url = f"http://{self.host}"
+
+    def socket(self, path, name=None, **options):
+        """A client's socket, under another name of the server's if need be."""
+        url = f"ws://{name or '127.0.0.1'}:{self.port}{path}"
+        return connect(url, host="127.0.0.1", port=self.port, compression=None, proxy=None, **options)
+
+
+@contextlib.asynccontextmanager
+async def served(app):
+    logging.getLogger("uvicorn.error").setLevel(logging.WARNING)
+    config = uvicorn.Config(
+        app,
+        port=0,
+        log_config=None,
+        access_log=False,
+        ws_per_message_deflate=False,
+        timeout_graceful_shutdown=2,
+    )
+    server = uvicorn.Server(config)
+    task = asyncio.create_task(server.serve())
+    while not server.started:
+        if task.done():
+            await task
+        await asyncio.sleep(0.01)
+    try:
+        yield Served(server)
+    finally:
+        server.should_exit = True
+        await task
+
+
+@pytest.fixture(scope="session")
+def serve():
+    """`async with serve(app) as at:` serves an ASGI application on loopback."""
+    return served
+
+
+@pytest.fixture(scope="module")
+async def at():
+    """The whole server with the paper's rig, simulated in real time. rig: what stands behind it."""
+    rig = Rig(build_machine(RigFile(), realtime=True))
+    async with served(create_app(rig)) as served_rig:
+        served_rig.rig = rig
+        yield served_rig
+
+
+@pytest.fixture
+async def api(at):
+    """An HTTP client of the server's REST interface."""
+    async with httpx.AsyncClient(base_url=at.url + "/api/v1", timeout=10.0) as client:
+        yield client

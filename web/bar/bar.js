@@ -1,0 +1,68 @@
+/** The bar: what rig this is, what it does and why, how well the loop runs, and STOP. */
+import { trackingWords } from "../camera/tracking.js";
+import { KeySheet } from "../keys/keys.js";
+import { stopNow } from "../live/actions.js";
+import { useStore } from "../store.js";
+import { quantity } from "../units.js";
+import { html } from "../view.js";
+
+export function Bar() {
+  const tick = useStore((state) => state.tick);
+  const rig = useStore((state) => state.rig);
+  return html`
+    <header class="bar">
+      <div class="bar-name">
+        <h1>${rig?.name ?? "pivotrig"}</h1>
+        ${(tick?.simulated ?? rig?.simulated) && html`<span class="badge" title="No coil is real: camera, robot and board are simulated">SIM</span>`}
+      </div>
+      <${State} tick=${tick} />
+      <${Vitals} tick=${tick} />
+      <${KeySheet} />
+      <button class="stop" type="button" onClick=${stopNow} aria-keyshortcuts="Escape Space" title="Coils to zero, at once (Escape or Space)">STOP</button>
+    </header>
+  `;
+}
+
+const paused = (tick) => Boolean(tick?.run?.paused);
+
+export const stateWord = (tick) => (tick ? (paused(tick) && tick.rig !== "fault" ? "paused" : tick.rig) : "connecting");
+
+/** The reason in words; of several faults the first cause, as the rig gives it. */
+function reasonOf(tick) {
+  if (!tick) return "";
+  return tick.reason || tick.faults?.[0]?.message || "";
+}
+
+function State({ tick }) {
+  const word = stateWord(tick);
+  const reason = reasonOf(tick);
+  return html`
+    <div class="state" role="status" data-state=${tick?.rig ?? "unknown"}>
+      <span class="state-word">${word}</span>
+      ${reason && html`<span class="state-reason" title=${reason}>${reason}</span>`}
+      <span class="unseen">, robot ${tick ? trackingWords(tick).split(" for ")[0] : "unknown"}</span>
+    </div>
+  `;
+}
+
+function Vitals({ tick }) {
+  const loop = tick?.loop;
+  const link = tick?.link;
+  return html`
+    <dl class="vitals">
+      <div title="Frames a second that went through the loop; ${loop?.dropped_frames ?? 0} dropped so far">
+        <dt>Camera</dt><dd>${quantity(loop?.rate_Hz, "fps", 0)}</dd></div>
+      <div title="From frame in to bytes out: median, and 99th percentile">
+        <dt>Loop</dt><dd>${quantity(loop?.latency_p50_ms, "ms")} <span class="soft">p99 ${quantity(loop?.latency_p99_ms, "ms")}</span></dd></div>
+      <div title="${linkDetail(link)}"><dt>Link</dt><dd>${link?.state ?? "–"} <span class="soft">${roundTrip(link)}</span></dd></div>
+    </dl>
+  `;
+}
+
+const roundTrip = (link) => (typeof link?.round_trip_ms === "number" ? quantity(link.round_trip_ms, "ms", 0) : "");
+
+function linkDetail(link) {
+  if (!link) return "not known yet";
+  const parts = [link.port, `firmware ${link.firmware}`, `board ${link.board_state}`, `supply ${quantity(link.supply_V, "V")}`];
+  return [...parts, `${link.bad_frames} bad frames`, ...(link.board_faults ?? [])].join(" · ");
+}

@@ -1,0 +1,32 @@
+/** Below the live part: this session's runs and the log. */
+import { useStore } from "../store.js";
+import { html, useRef, useState } from "../view.js";
+import { Log } from "./log.js";
+import { Runs } from "./runs.js";
+
+const TABS = [["runs", "Runs", Runs], ["log", "Log", Log]];
+
+export function Journal() {
+  const [open, setOpen] = useState("runs");
+  const list = useRef(null);
+  const faults = useStore((state) => state.tick?.faults?.length ?? 0);
+  const move = (event) => {
+    const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
+    if (!step) return;
+    const index = (TABS.findIndex(([name]) => name === open) + step + TABS.length) % TABS.length;
+    setOpen(TABS[index][0]);
+    list.current.children[index].focus();
+  };
+  const Page = TABS.find(([name]) => name === open)[2];
+  return html`
+    <section class="card journal" aria-label="Runs and log">
+      <div class="tabs" role="tablist" aria-label="Runs and log" ref=${list} onKeyDown=${move}>
+        ${TABS.map(([name, title]) => html`
+          <button type="button" role="tab" id=${`tab-${name}`} aria-controls="tab-page" aria-selected=${name === open}
+            tabindex=${name === open ? 0 : -1} onClick=${() => setOpen(name)}>${title}${name === "log" && faults > 0 ? ` (${faults} open)` : ""}</button>
+        `)}
+      </div>
+      <div class="tab-page" role="tabpanel" id="tab-page" aria-labelledby=${`tab-${open}`} tabindex="0"><${Page} /></div>
+    </section>
+  `;
+}
