@@ -73,6 +73,7 @@ async def lifespan(app: FastAPI) -> AsyncIterator[None]:
     rig, scene = app.state.rig, app.state.scene
     await rig.start()
     try:
+        await app.state.pictures.start()
         await start_scene(scene)
         yield
     finally:

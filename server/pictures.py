@@ -26,6 +26,9 @@ class Pictures:
         self._thread = ThreadPoolExecutor(1, thread_name_prefix="jpeg")
         self._made: dict[View, tuple[int, asyncio.Future[bytes]]] = {}
 
+    async def start(self) -> None:
+        await asyncio.get_running_loop().run_in_executor(self._thread, bytes)
+
     def close(self) -> None:
         self._thread.shutdown(cancel_futures=True)
 

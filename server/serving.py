@@ -17,7 +17,7 @@ import platformdirs
 import uvicorn
 
 from control.link.conversion import LinkError
-from server.app import create_app
+from server.app import create_app, end_streams
 from server.assembly import Machine, build_machine
 from server.rig import Rig
 from server.settings import RigFile
@@ -58,8 +58,9 @@ class _Server(uvicorn.Server):
         self._address = address
         self._open_browser = open_browser
         self.failure: BaseException | None = None
+        self._application = create_app(self._rig)
         config = uvicorn.Config(
-            create_app(self._rig),
+            self._application,
             log_level="warning",
             access_log=False,
             ws_per_message_deflate=False,
@@ -72,6 +73,11 @@ class _Server(uvicorn.Server):
     def handle_exit(self, sig: int, frame: FrameType | None) -> None:
         self._rig.stop_coils()
         super().handle_exit(sig, frame)
+
+    async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
+        """Streams are told to end; else uvicorn would wait for them until its patience is over."""
+        end_streams(self._application)
+        await super().shutdown(sockets)
 
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
         await super().startup(sockets)

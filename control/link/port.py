@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import termios
 import threading
+import time
 from collections.abc import Callable
 
 import serial
@@ -18,6 +19,9 @@ from control.snapshot import LinkStatus
 
 WRITE_TIMEOUT = 0.01
 """A port that takes no bytes for so long is jammed, s; less than a frame of the camera."""
+
+LAST_WORDS = 0.02
+"""How long a closing port may take to send what it was given, the stop above all, s."""
 
 FIRST_RETRY = 0.5
 LAST_RETRY = 5.0
@@ -76,7 +80,7 @@ class Link:
             if port is None:
                 return
             try:
-                port.reset_output_buffer()  # else closing a jammed line waits until it is read
+                _drain(port)
             except PORT_ERRORS as error:
                 self._session.reason = f"{self.port} is gone: {error}"
             port.close()
@@ -97,6 +101,11 @@ class Link:
             self._lose(str(error))
             return
         self._session.open()
+
+    def greet(self) -> None:
+        """Greet the board anew, which zeroes its coils and clears a fault that it has latched."""
+        if self._serial is not None:
+            self._session.open()
 
     # ---- the tick
 
@@ -183,6 +192,11 @@ class Link:
         return self._session.reason
 
     @property
+    def incident(self) -> str:
+        """Why the conversation with the board broke last; empty again after the next arm edge."""
+        return self._session.incident
+
+    @property
     def is_ready(self) -> bool:
         return self._session.state is LinkState.READY
 
@@ -209,10 +223,19 @@ def _open_port(port: str, baud: int) -> serial.Serial:
         opened = serial.serial_for_url(
             port, baudrate=baud, timeout=0, write_timeout=WRITE_TIMEOUT, exclusive=True
         )
-        opened.reset_input_buffer()
     except (*PORT_ERRORS, ValueError) as error:
         raise LinkError(
             f"cannot open {port} at {baud} baud: {error}. Check that it is connected, that no other program "
             "has it open, and that you may use it (group dialout)"
         ) from error
     return opened
+
+
+def _drain(port: serial.Serial) -> None:
+    """Lets the last bytes out; what a jammed line keeps is thrown away, since closing would wait for it."""
+    until = time.monotonic() + LAST_WORDS
+    while port.out_waiting > 0:
+        if time.monotonic() > until:
+            port.reset_output_buffer()
+            return
+        time.sleep(1e-3)

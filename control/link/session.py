@@ -29,8 +29,10 @@ class LinkState(StrEnum):
 
 
 class Session:
-    """state, and reason: a sentence for people on why it is not READY, or what happened last.
+    """state, and reason: a sentence for people on why it is not READY, empty when it is.
 
+    incident: why the conversation broke last, kept until the next arm edge; a new handshake takes only two
+    frames, and whoever was driving must not take the board for the one that it was.
     boot_id: of the board in conversation.  round_trip: from the last measured drive to its echo, s.
     """
 
@@ -38,6 +40,7 @@ class Session:
         self.configuration = configuration
         self.state = LinkState.CLOSED
         self.reason = "not opened"
+        self.incident = ""
         self.firmware = ""
         self.boot_id = 0
         self.round_trip: float | None = None
@@ -59,9 +62,15 @@ class Session:
 
     def lose(self, reason: str) -> None:
         """The port is gone."""
+        if self.state is LinkState.READY:
+            self.incident = reason
         self.state = LinkState.CLOSED
         self.reason = reason
         self._forget()
+
+    def _break_off(self, incident: str) -> None:
+        self.incident = f"{incident}: arm again"
+        self._greet(self.incident)
 
     def _greet(self, reason: str) -> None:
         self.state = LinkState.GREETING
@@ -80,7 +89,7 @@ class Session:
         self.boot_id = packet.boot_id
         self.firmware = ".".join(str(number) for number in banner.firmware)
         self.state = LinkState.CONFIGURING
-        self.reason = "configuring the board"
+        self.reason = self.incident or "configuring the board"
         self._asked_at = -1e9
 
     def _be_ready(self, now: float) -> None:
@@ -117,7 +126,7 @@ class Session:
             if answers:
                 self._meet(packet, banner)
         elif packet.boot_id != self.boot_id:
-            self._greet(f"the board was reset (boot id {self.boot_id} -> {packet.boot_id}): arm again")
+            self._break_off(f"the board was reset (boot id {self.boot_id} -> {packet.boot_id})")
         elif self.state is LinkState.CONFIGURING and answers and banner.configuration_hash == self._hash:
             self._be_ready(now)
 
@@ -135,10 +144,10 @@ class Session:
         if self.state is not LinkState.READY:
             return None
         if packet.boot_id != self.boot_id:
-            self._greet(f"the board was reset (boot id {self.boot_id} -> {packet.boot_id}): arm again")
+            self._break_off(f"the board was reset (boot id {self.boot_id} -> {packet.boot_id})")
             return None
         if report.configuration_hash != self._hash:
-            self._greet("the board lost its configuration: arm again")
+            self._break_off("the board lost its configuration")
             return None
         self._heard_at = now
         self._time_echo(report.last_sequence, now)
@@ -160,11 +169,11 @@ class Session:
 
     def _check_attention(self, now: float) -> None:
         if now - self._heard_at > SILENCE:
-            self._greet(f"no telemetry for {SILENCE} s: greeting the board again; arm again")
+            self._break_off(f"no telemetry for {SILENCE} s")
         elif self.telemetry is not None:
             unheard = wire.sequence_distance(self._sequence, self.telemetry.last_sequence)
             if unheard > BEHIND:
-                self._greet(f"the board missed the last {unheard} messages: greeting it again; arm again")
+                self._break_off(f"the board missed the last {unheard} messages")
 
     # ---- bytes out
 
@@ -188,6 +197,8 @@ class Session:
         if self.state is not LinkState.READY:
             raise LinkError(f"the board is not ready: {self.reason}")
         frame = self._numbered(conversion.drive_message(command, self.configuration))
+        if command.start_heading is not None:
+            self.incident = ""
         if self._probe is None or now - self._probe[1] > 1.0:
             self._probe = self._sequence, now
         return frame

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from control.link.messages import BoardCode, ResetCause, Triple
 from control.simulation import protocol_sim
 from control.simulation.coil_drive import PWM_STEPS
+from control.simulation.regulator import FULL_COUNT
 from control.simulation.twin import FirmwareTwin
 from control.snapshot import ZERO, Vector
 
@@ -163,4 +164,5 @@ class TwinBoard:
 
 def _counts(current: float) -> int:
     """What the ADC makes of the driver's unsigned current sense: 0.14 V/A, 10 bits of 5 V."""
-    return min(1023, int(abs(current) * _COUNTS_PER_AMPERE))
+    counts = int(abs(current) * _COUNTS_PER_AMPERE)
+    return counts if counts < FULL_COUNT else FULL_COUNT

@@ -73,7 +73,7 @@ class Regulator:
     def observe(self, counts: int) -> None:
         """One millisecond of the coil's model, then half of the way into the sensed interval (Q8 mA)."""
         current = self._current
-        current += ((self._voltage - (((current >> 4) * self._feed) >> 14)) * self._model) >> 8
+        current += ((self._voltage - (((current >> 6) * self._feed) >> 12)) * self._model) >> 8
         low = counts * SENSE_GAIN
         if current >= 0:
             if current < low:

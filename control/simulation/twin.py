@@ -27,7 +27,7 @@ _CONFIGURATION_LIMITS = {
     "ramp": (1, 1000),
     "field_slew": (1, 65535),
     "resistances": (100, 10000),
-    "inductances": (200, 16000),
+    "inductances": (300, 16000),
     "supply": (5000, 50000),
     "max_field": (1, 32767),
     "max_rate": (1, 0x0FFFFFFF),
@@ -262,8 +262,10 @@ class FirmwareTwin:
 
 
 def _configuration_is_allowed(message: messages.Configure) -> bool:
+    """Within the ranges, and no coil faster than L/R = 5 ms, which a 1 kHz loop could not regulate."""
     for name, (low, high) in _CONFIGURATION_LIMITS.items():
         value = getattr(message, name)
         if not all(low <= number <= high for number in (value if isinstance(value, tuple) else (value,))):
             return False
-    return True
+    constants = zip(message.resistances, message.inductances, strict=True)
+    return all(2 * inductance >= resistance for resistance, inductance in constants)

@@ -1,4 +1,7 @@
-"""How a route reaches the parts that the application holds."""
+"""How a route reaches the parts that the application holds.
+
+Asynchronous although nothing is awaited: FastAPI runs plain functions on a worker thread.
+"""
 
 from __future__ import annotations
 
@@ -14,15 +17,15 @@ if TYPE_CHECKING:
     from server.rig import Rig
 
 
-def the_rig(connection: HTTPConnection) -> Rig:
+async def the_rig(connection: HTTPConnection) -> Rig:
     return connection.app.state.rig
 
 
-def the_pictures(connection: HTTPConnection) -> Pictures:
+async def the_pictures(connection: HTTPConnection) -> Pictures:
     return connection.app.state.pictures
 
 
-def the_tick_text(connection: HTTPConnection) -> TickText:
+async def the_tick_text(connection: HTTPConnection) -> TickText:
     return connection.app.state.tick_text
 
 

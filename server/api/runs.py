@@ -56,8 +56,9 @@ def run_json(run: Run) -> dict[str, Any]:
 
 
 @router.post("/runs", status_code=201)
-async def start(body: RunBody, rig: TheRig) -> dict[str, Any]:
+async def start(rig: TheRig, body: RunBody | None = None) -> dict[str, Any]:
     """Start a run; what is left out comes from the selection."""
+    body = body or RunBody()
     request = RunRequest(
         change(rig.selection, body),
         passes=body.passes,

@@ -11,7 +11,8 @@ import pytest
 from dashboard_visit import PATIENCE, OpenTab, ServedRig, Visit
 from playwright.sync_api import Browser, expect, sync_playwright
 
-CHROMIUM_ARGS = ("--no-sandbox", "--use-angle=gl-egl", "--ignore-gpu-blocklist")
+CHROMIUM_ARGS = ("--no-sandbox", "--use-angle=gl-egl", "--ignore-gpu-blocklist", "--disable-gpu-compositing")
+"""WebGL in software for the scene; without a graphics card, composing the page itself is cheaper without it."""
 
 expect.set_options(timeout=PATIENCE * 1e3)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 
 import pytest
@@ -13,6 +14,8 @@ pytestmark = pytest.mark.exclusive
 
 CURVE_BLUE = (178, 114, 0)
 """The first curve of each chart in the light theme, BGR."""
+HALF_A_ROBOT = 5.0
+"""mm"""
 ROBOT_RED = (45, 45, 190)
 
 
@@ -29,6 +32,12 @@ def reading(page: Page, name: str) -> str:
     card = page.get_by_role("region", name="Camera")
     row = card.locator("div").filter(has=page.get_by_text(name, exact=True)).last
     return row.get_by_role("definition").inner_text()
+
+
+def place(page: Page) -> tuple[float, float]:
+    """Where the page says that the robot is, mm."""
+    x, y = (reading(page, name).removesuffix(" mm").replace("−", "-") for name in ("x", "y"))
+    return float(x), float(y)
 
 
 def walk(page: Page) -> None:
@@ -48,8 +57,8 @@ def test_two_clicks_after_the_first_visit_the_robot_walks_the_eight(dashboard: V
     eventually(lambda: "locked" in reading(page, "Tracking"), "the camera sees the robot")
     walk(page)
     eventually(lambda: bool(re.fullmatch(r"\d+\.\d\d mm", reading(page, "Error"))), "an error in mm")
-    before = reading(page, "x"), reading(page, "y")
-    eventually(lambda: before != (reading(page, "x"), reading(page, "y")), "the robot moves")
+    start = place(page)
+    eventually(lambda: math.dist(start, place(page)) > HALF_A_ROBOT, "the robot has left its place")
     expect(page.get_by_role("progressbar")).to_be_visible()
     expect(page.get_by_role("row", name="running")).to_contain_text("eight")
 

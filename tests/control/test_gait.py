@@ -1,5 +1,6 @@
 """Sweeps, and the walk that they make."""
 
+import itertools
 import math
 
 import pytest
@@ -49,7 +50,7 @@ def test_sweeps_end_exactly_at_the_sweep_angle_whatever_the_tick(
     one = walker(sweep, rate)
     walk(one, min(40 * tick, 20.0), tick)
     headings = one.controller.switch_headings  # type: ignore[attr-defined]
-    for earlier, later in zip(headings, headings[1:], strict=False):
+    for earlier, later in itertools.pairwise(headings):
         assert abs(later - earlier) == pytest.approx(sweep, abs=1e-9)
 
 

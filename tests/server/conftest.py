@@ -1,4 +1,4 @@
-"""A real server on a free port, and the simulated rig behind it, for as long as a module of tests needs them."""
+"""A real server on a free port, with the simulated rig behind it, as long as a module's tests need it."""
 
 import asyncio
 import contextlib
@@ -7,9 +7,10 @@ import logging
 import httpx
 import pytest
 import uvicorn
+from fastapi import FastAPI
 from websockets.asyncio.client import connect
 
-from server.app import create_app
+from server.app import create_app, end_streams
 from server.assembly import build_machine
 from server.rig import Rig
 from server.settings import RigFile
@@ -23,6 +24,8 @@ def anyio_backend():
 class Served:
     """Where an application is served. server: to be told to end."""
 
+    rig: Rig
+
     def __init__(self, server):
         self.server = server
         self.port = server.servers[0].sockets[0].getsockname()[1]
@@ -33,6 +36,15 @@ class Served:
         """A client's socket, under another name of the server's if need be."""
         url = f"ws://{name or '127.0.0.1'}:{self.port}{path}"
         return connect(url, host="127.0.0.1", port=self.port, compression=None, proxy=None, **options)
+
+
+class EndingServer(uvicorn.Server):
+    """Tells streams to end before it waits for them, as the program's own server does."""
+
+    async def shutdown(self, sockets=None):
+        if isinstance(self.config.app, FastAPI):
+            end_streams(self.config.app)
+        await super().shutdown(sockets)
 
 
 @contextlib.asynccontextmanager
@@ -46,7 +58,7 @@ async def served(app):
         ws_per_message_deflate=False,
         timeout_graceful_shutdown=2,
     )
-    server = uvicorn.Server(config)
+    server = EndingServer(config)
     task = asyncio.create_task(server.serve())
     while not server.started:
         if task.done():

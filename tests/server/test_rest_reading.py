@@ -3,12 +3,15 @@ import math
 import httpx
 import pytest
 
+from control.controllers import controllers
+
 pytestmark = pytest.mark.anyio
 
 STATE = {
-    "rig", "reason", "faults", "simulated", "tick", "time_s", "captured_s", "pose", "pose_sigma", "measurement",
-    "window_px", "tracking", "tracking_age_s", "command", "reference", "error_mm", "currents_A",
-    "measured_currents_A", "field_mT", "saturated", "body_tilt_deg", "run", "loop", "link", "operator",
+    "rig", "reason", "faults", "simulated", "tick", "time_s", "captured_s", "pose", "pose_sigma",
+    "measurement", "window_px", "tracking", "tracking_age_s", "command", "reference", "error_mm",
+    "currents_A", "measured_currents_A", "field_mT", "saturated", "body_tilt_deg", "run", "loop", "link",
+    "operator",
 }  # fmt: skip
 
 
@@ -38,7 +41,10 @@ async def test_the_rig_tells_its_values_in_lab_units(api):
 
 async def test_the_selection_starts_with_a_geometric_eight_and_all_parameters(api):
     selection = (await api.get("/selection")).json()
-    assert selection["controller"] == {"name": "geometric", "parameters": {"gain": 4.0}}
+    assert selection["controller"] == {
+        "name": "geometric",
+        "parameters": controllers["geometric"].Parameters().model_dump(),
+    }
     assert selection["trajectory"]["name"] == "eight"
     assert selection["trajectory"]["parameters"]["width_mm"] == 80.0
     assert selection["gait"]["sweep_deg"] == 30.0

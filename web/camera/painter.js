@@ -5,6 +5,11 @@ import { keepOpen } from "../live/socket.js";
 import { drawOverlay } from "./overlay.js";
 import { projection } from "./projection.js";
 
+/** Pictures are asked for at most this often: more cannot be told apart and costs the rig's computer, ms. */
+const PICTURE_MS = 33;
+/** The overlay moves with the pictures; without any for this long it moves by itself, s. */
+const ALONE_S = 0.1;
+
 /**
  * @param {HTMLCanvasElement} canvas
  * @returns painter with `show({view, overlay})`, `age_s()` of the newest picture, and `close()`
@@ -14,7 +19,8 @@ export function createPainter(canvas) {
   const painter = { picture: null, overlay: true, model: null, project: null, receivedAt: null };
   let requested = 0;
   let frames = null;
-  let acknowledge = null;
+  let asked = 0;
+  let askForNext = null;
 
   function invalidate() {
     requested ||= requestAnimationFrame(paint);
@@ -25,8 +31,8 @@ export function createPainter(canvas) {
     fit(canvas);
     const size = get().camera?.size ?? (painter.picture ? [painter.picture.width, painter.picture.height] : null);
     if (size) paintScaled(context, painter, size);
-    acknowledge?.("ok");
-    acknowledge = null;
+    askForNext?.();
+    askForNext = null;
   }
 
   async function receive(data, send) {
@@ -37,7 +43,11 @@ export function createPainter(canvas) {
       painter.receivedAt = performance.now();
     }
     // The next picture is asked for once this one is on the screen: a hidden page asks for none.
-    acknowledge = send;
+    const rest = PICTURE_MS - (performance.now() - asked);
+    askForNext = () => setTimeout(() => {
+      asked = performance.now();
+      send("ok");
+    }, rest);
     invalidate();
   }
 
@@ -53,7 +63,7 @@ export function createPainter(canvas) {
 
   const resized = new ResizeObserver(invalidate);
   resized.observe(canvas);
-  const forgetTicks = onTick(invalidate);
+  const forgetTicks = onTick(() => (pictureAge(painter) ?? 1) > ALONE_S && invalidate());
   const close = () => {
     cancelAnimationFrame(requested);
     resized.disconnect();

@@ -5,7 +5,7 @@ import { fixed } from "../units.js";
 
 const SYNC = uPlot.sync("dashboard");
 /** A chart is drawn at most this often: faster cannot be followed, ms. */
-const REDRAW_MS = 66;
+const REDRAW_MS = 100;
 const LEGEND_MS = 200;
 /** The least that an axis spans, so that noise at rest does not fill the chart. */
 const LEAST_SPAN = { mm: 4, deg: 20, A: 2 };

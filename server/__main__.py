@@ -1,0 +1,5 @@
+"""`python -m server` is `pivotrig`."""
+
+from server.cli import main
+
+main()

@@ -1,0 +1,26 @@
+"""`make bench`: how fast the program is, as ratios against a reference in the same run.
+
+Each section prints its own table; nothing here passes or fails.
+"""
+
+from __future__ import annotations
+
+import argparse
+
+from tests.benchmarks import live_loop, simulation_pace, tracking_cost
+
+SECTIONS = {
+    "pace": simulation_pace.report,
+    "loop": live_loop.report,
+    "tracking": tracking_cost.report,
+}
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(prog="make bench", description=__doc__)
+    parser.add_argument("sections", nargs="*", choices=[*SECTIONS, []], help="default: all of them")
+    for name in parser.parse_args().sections or SECTIONS:
+        SECTIONS[name]()
+
+
+main()

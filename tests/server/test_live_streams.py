@@ -1,0 +1,171 @@
+import asyncio
+import gc
+import json
+import socket
+import time
+
+import httpx
+import pytest
+from websockets.exceptions import ConnectionClosed
+
+from server.app import create_app
+from server.assembly import build_machine
+from server.rig import Rig
+from server.settings import RigFile
+
+pytestmark = pytest.mark.anyio
+
+JPEG = b"\xff\xd8\xff"
+
+
+async def ticks(telemetry, count):
+    found = []
+    while len(found) < count:
+        message = json.loads(await telemetry.recv(), parse_constant=pytest.fail)
+        if message["type"] == "tick":
+            found.append(message)
+    return found
+
+
+async def test_telemetry_brings_the_state_in_order(at, api):
+    async with at.socket("/api/v1/telemetry") as telemetry:
+        numbers = [tick["tick"] for tick in await ticks(telemetry, 10)]
+    assert numbers == sorted(set(numbers))
+    state = (await api.get("/state")).json()
+    async with at.socket("/api/v1/telemetry") as telemetry:
+        (tick,) = await ticks(telemetry, 1)
+    assert set(tick) == {"type", *state}
+
+
+@pytest.mark.parametrize("rate", [5.0, 30.0])
+async def test_telemetry_keeps_to_the_rate_that_was_asked_for(at, rate):
+    async with at.socket(f"/api/v1/telemetry?rate_Hz={rate}") as telemetry:
+        await ticks(telemetry, 2)
+        start = time.monotonic()
+        count = max(5, int(rate / 2))
+        await ticks(telemetry, count)
+        taken = time.monotonic() - start
+    assert taken > 0.9 * (count - 1) / rate
+
+
+async def test_all_viewers_share_one_text_of_a_tick(at):
+    text = at.rig.updates
+    async with text.subscribe() as mailbox:
+        snapshot = await mailbox.get()
+    cache = create_app(at.rig).state.tick_text
+    assert cache.of(snapshot) is cache.of(snapshot)
+
+
+async def test_a_viewer_that_does_not_read_delays_nobody_and_is_dropped(at):
+    def full_of_deaf_viewers():
+        deaf = socket.create_connection(("127.0.0.1", at.port))
+        deaf.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+        deaf.sendall(
+            b"GET /api/v1/telemetry HTTP/1.1\r\nHost: %b\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
+            b"Sec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\nSec-WebSocket-Version: 13\r\n\r\n"
+            % at.host.encode()
+        )
+        return deaf
+
+    before = at.rig.updates.subscribers
+    viewers = [full_of_deaf_viewers() for _ in range(3)]
+    try:
+        while at.rig.updates.subscribers < before + 3:
+            await asyncio.sleep(0.01)
+        big = {"type": "event", "time_s": 0.0, "severity": "info", "code": "test", "message": "x" * 100_000}
+        publishing = 0.0
+        async with asyncio.timeout(30.0), at.socket("/api/v1/telemetry", max_size=None) as telemetry:
+            while at.rig.updates.subscribers > before + 1:
+                start = time.perf_counter()
+                at.rig.announcements.publish(big)
+                publishing = max(publishing, time.perf_counter() - start)
+                await ticks(telemetry, 1)
+        assert publishing < 0.05
+    finally:
+        for viewer in viewers:
+            viewer.close()
+
+
+async def test_the_camera_sends_one_picture_for_each_acknowledgement(at):
+    async with at.socket("/api/v1/camera") as camera:
+        assert (await camera.recv()).startswith(JPEG)
+        with pytest.raises(TimeoutError):
+            await asyncio.wait_for(camera.recv(), 0.2)
+        await camera.send("ok")
+        assert (await camera.recv()).startswith(JPEG)
+
+
+async def test_an_acknowledged_picture_is_the_newest_one(at):
+    async with at.socket("/api/v1/camera") as camera:
+        first = await camera.recv()
+        await asyncio.sleep(0.1)
+        index = at.rig.frame.index
+        await camera.send("ok")
+        second = await camera.recv()
+    assert first != second
+    assert at.rig.frame.index >= index
+
+
+@pytest.mark.parametrize("view", ["raw", "overlay", "mask"])
+async def test_each_view_is_a_picture_of_its_own(at, api, view):
+    answer = await api.get(f"/camera/snapshot.jpg?view={view}")
+    assert answer.headers["content-type"] == "image/jpeg"
+    assert answer.content.startswith(JPEG)
+    async with at.socket(f"/api/v1/camera?view={view}") as camera:
+        assert (await camera.recv()).startswith(JPEG)
+
+
+async def test_any_number_of_viewers_costs_one_encoding_of_a_frame(at):
+    pictures = create_app(at.rig).state.pictures
+    frame = at.rig.frame
+    made = await asyncio.gather(*(pictures.encoded(frame, "raw") for _ in range(10)))
+    assert all(picture is made[0] for picture in made)
+    pictures.close()
+
+
+async def test_the_mjpeg_stream_goes_on_with_picture_after_picture(at):
+    received = b""
+    async with (
+        httpx.AsyncClient() as client,
+        client.stream("GET", f"{at.url}/api/v1/camera/stream.mjpg") as stream,
+    ):
+        assert stream.headers["content-type"].startswith("multipart/x-mixed-replace")
+        async for chunk in stream.aiter_raw():
+            received += chunk
+            if received.count(b"--picture") > 3:
+                break
+    part = received.split(b"--picture\r\n")[1]
+    head, _, body = part.partition(b"\r\n\r\n")
+    length = int(head.split(b"Content-Length: ")[1])
+    assert body[:length].startswith(JPEG)
+    assert body[length:] == b"\r\n"
+
+
+async def test_a_flood_of_words_from_a_viewer_ends_its_own_socket_only(at):
+    async with at.socket("/api/v1/telemetry") as calm, at.socket("/api/v1/telemetry") as loud:
+        await loud.send("x" * 100_000)
+        with pytest.raises(ConnectionClosed) as closed:
+            await ticks(loud, 1000)
+        assert closed.value.rcvd is not None
+        assert closed.value.rcvd.code == 1009
+        await ticks(calm, 2)
+
+
+async def test_the_end_comes_soon_with_every_kind_of_viewer_and_leaves_no_task_or_port(serve):
+    tasks = asyncio.all_tasks()
+    rig = Rig(build_machine(RigFile(), realtime=True))
+    async with serve(create_app(rig)) as at:
+        telemetry, camera = await at.socket("/api/v1/telemetry"), await at.socket("/api/v1/camera")
+        await telemetry.recv()
+        await camera.recv()
+        stream = httpx.AsyncClient()
+        await stream.send(stream.build_request("GET", f"{at.url}/api/v1/camera/stream.mjpg"), stream=True)
+        start = time.monotonic()
+    assert time.monotonic() - start < 1.5
+    for viewer in (telemetry, camera):
+        await viewer.wait_closed()
+    await stream.aclose()
+    gc.collect()
+    assert {task for task in asyncio.all_tasks() - tasks if not task.done()} == set()
+    with pytest.raises(OSError, match="refused"):
+        socket.create_connection(("127.0.0.1", at.port), timeout=1.0)
