@@ -70,9 +70,11 @@ class _Server(uvicorn.Server):
         )
         super().__init__(config)
 
-    def handle_exit(self, sig: int, frame: FrameType | None) -> None:
+    def handle_exit(self, sig: int, frame: FrameType | None) -> None:  # noqa: ARG002 (uvicorn's signature)
+        """Zero current first. The exit is then an orderly one, and the status 0; a second Ctrl-C cuts it short."""
         self._rig.stop_coils()
-        super().handle_exit(sig, frame)
+        self.force_exit = self.should_exit and sig == signal.SIGINT
+        self.should_exit = True
 
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
         """Streams are told to end; else uvicorn would wait for them until its patience is over."""

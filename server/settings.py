@@ -193,6 +193,7 @@ class RigFile(Section):
         """The same rig with its camera and port simulated."""
         whole = self.model_dump(mode="json")
         whole["camera"]["uri"] = whole["link"]["port"] = "sim://"
+        whole["simulation"]["board"] = "twin"
         return RigFile.model_validate(whole)
 
 

@@ -53,7 +53,7 @@ class Publisher(Generic[T]):
         self._replay = replay
         self._last: deque[T] = deque(maxlen=1)
         self._mailboxes: set[Mailbox[T]] = set()
-        self._closed = False
+        self._closed = asyncio.Event()
 
     @property
     def subscribers(self) -> int:
@@ -61,7 +61,10 @@ class Publisher(Generic[T]):
 
     @property
     def closed(self) -> bool:
-        return self._closed
+        return self._closed.is_set()
+
+    async def wait_closed(self) -> None:
+        await self._closed.wait()
 
     def publish(self, value: T) -> None:
         if self._replay:
@@ -71,7 +74,7 @@ class Publisher(Generic[T]):
 
     def close(self) -> None:
         """End every stream: readers get StreamEnded, so that no open connection holds up a shutdown."""
-        self._closed = True
+        self._closed.set()
         for mailbox in self._mailboxes:
             mailbox.close()
 
@@ -80,7 +83,7 @@ class Publisher(Generic[T]):
         mailbox = Mailbox[T](self._depth)
         for value in self._last:
             mailbox.put(value)
-        if self._closed:
+        if self.closed:
             mailbox.close()
         self._mailboxes.add(mailbox)
         try:

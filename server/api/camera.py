@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 from collections.abc import AsyncIterator
 from typing import Any
 
 from fastapi import APIRouter, Response, WebSocket
 from fastapi.responses import StreamingResponse
+from starlette.types import Message, Send
 
 from server.api.access import ThePictures, TheRig
 from server.api.body import StrictRoute
 from server.api.problems import Problem, Rejected
 from server.api.sockets import Line, listen, serve
 from server.pictures import Pictures, View
-from server.streams import Cadence, StreamEnded
+from server.streams import Cadence, Publisher, StreamEnded, until_first_ends
 
 router = APIRouter(tags=["camera"], route_class=StrictRoute)
 sockets = APIRouter()
@@ -22,6 +24,10 @@ sockets = APIRouter()
 BOUNDARY = "picture"
 STREAM_PERIOD = 1.0 / 30.0
 """Shortest time between two pictures of the MJPEG stream, s."""
+STREAM_TIMEOUT = 10.0
+"""A viewer that takes no picture for this long is dropped, s; a slow link only gets fewer of them."""
+FAREWELL = 0.2
+"""Time for a stream to end by itself when the rig stops, s."""
 FIRST_PICTURE = 2.0
 """How long a snapshot waits for the first frame, s."""
 
@@ -58,11 +64,30 @@ async def snapshot(pictures: ThePictures, view: View = "raw") -> Response:
 
 
 @router.get("/camera/stream.mjpg", response_class=StreamingResponse)
-async def stream(pictures: ThePictures, view: View = "raw") -> StreamingResponse:
+async def stream(rig: TheRig, pictures: ThePictures, view: View = "raw") -> StreamingResponse:
     """An endless MJPEG stream for viewers other than the page."""
-    return StreamingResponse(
-        parts(pictures, view), media_type=f"multipart/x-mixed-replace; boundary={BOUNDARY}"
-    )
+    return PictureStream(rig.updates, parts(pictures, view))
+
+
+class PictureStream(StreamingResponse):
+    """Ends with the rig, also for a viewer that has stopped reading and so never takes another picture."""
+
+    def __init__(self, updates: Publisher[Any], content: AsyncIterator[bytes]) -> None:
+        super().__init__(content, media_type=f"multipart/x-mixed-replace; boundary={BOUNDARY}")
+        self._updates = updates
+
+    async def stream_response(self, send: Send) -> None:
+        async def send_in_time(message: Message) -> None:
+            async with asyncio.timeout(STREAM_TIMEOUT):
+                await send(message)
+
+        with contextlib.suppress(TimeoutError):
+            await until_first_ends(super().stream_response(send_in_time), self._over())
+
+    async def _over(self) -> None:
+        """A moment after the rig's end, in which a viewer that reads gets a proper end of the stream."""
+        await self._updates.wait_closed()
+        await asyncio.sleep(FAREWELL)
 
 
 async def parts(pictures: Pictures, view: View) -> AsyncIterator[bytes]:

@@ -16,6 +16,7 @@ def test_a_dead_server_greys_the_page_and_its_return_brings_the_page_back(
 ) -> None:
     page = open_tab(own_server.url).page
     expect(page.get_by_role("status")).to_contain_text("disarmed")
+    expect(page.get_by_text("waiting for the first frame")).to_be_hidden()
     own_server.kill()
     expect(page.get_by_role("alert")).to_contain_text("No connection: the server does not answer")
     eventually(lambda: opacity(page.locator("main")) < 0.7, "the page is grey")

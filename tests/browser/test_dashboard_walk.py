@@ -40,7 +40,13 @@ def place(page: Page) -> tuple[float, float]:
     return float(x), float(y)
 
 
+def scene_is_drawn(page: Page) -> bool:
+    return colours(pixels(page.get_by_title("3D scene of coils, field and robot"))) > 24
+
+
 def walk(page: Page) -> None:
+    """Two clicks, once the page stands: its first second in a software browser starves the simulated rig."""
+    eventually(lambda: scene_is_drawn(page), "a drawn scene")
     button(page, "Arm").click()
     button(page, "Start walking").click()
     expect(state(page)).to_contain_text("running")
@@ -83,7 +89,6 @@ def test_each_chart_draws_what_comes_in(dashboard: Visit) -> None:
 
 def test_the_scene_draws_coils_and_field(dashboard: Visit) -> None:
     page = dashboard.page
-    scene = page.get_by_title("3D scene of coils, field and robot")
-    if not becomes_true(lambda: colours(pixels(scene)) > 24):
+    if not becomes_true(lambda: scene_is_drawn(page)):
         page.reload()
-        eventually(lambda: colours(pixels(scene)) > 24, "a drawn scene, after one reload")
+        eventually(lambda: scene_is_drawn(page), "a drawn scene, after one reload")

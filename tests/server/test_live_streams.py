@@ -1,5 +1,4 @@
 import asyncio
-import gc
 import json
 import socket
 import time
@@ -151,6 +150,11 @@ async def test_a_flood_of_words_from_a_viewer_ends_its_own_socket_only(at):
         await ticks(calm, 2)
 
 
+async def whole_stream(at):
+    async with httpx.AsyncClient() as client:
+        return (await client.get(f"{at.url}/api/v1/camera/stream.mjpg", timeout=10.0)).content
+
+
 async def test_the_end_comes_soon_with_every_kind_of_viewer_and_leaves_no_task_or_port(serve):
     tasks = asyncio.all_tasks()
     rig = Rig(build_machine(RigFile(), realtime=True))
@@ -158,14 +162,17 @@ async def test_the_end_comes_soon_with_every_kind_of_viewer_and_leaves_no_task_o
         telemetry, camera = await at.socket("/api/v1/telemetry"), await at.socket("/api/v1/camera")
         await telemetry.recv()
         await camera.recv()
-        stream = httpx.AsyncClient()
-        await stream.send(stream.build_request("GET", f"{at.url}/api/v1/camera/stream.mjpg"), stream=True)
+        deaf = socket.create_connection(("127.0.0.1", at.port))
+        deaf.sendall(b"GET /api/v1/camera/stream.mjpg HTTP/1.1\r\nHost: %b\r\n\r\n" % at.host.encode())
+        listening = asyncio.create_task(whole_stream(at))
+        while rig.updates.subscribers < 4:
+            await asyncio.sleep(0.01)
         start = time.monotonic()
     assert time.monotonic() - start < 1.5
     for viewer in (telemetry, camera):
         await viewer.wait_closed()
-    await stream.aclose()
-    gc.collect()
+    deaf.close()
+    assert (await listening).count(b"--picture") > 0
     assert {task for task in asyncio.all_tasks() - tasks if not task.done()} == set()
     with pytest.raises(OSError, match="refused"):
         socket.create_connection(("127.0.0.1", at.port), timeout=1.0)

@@ -23,9 +23,7 @@ export function Bar() {
   `;
 }
 
-const paused = (tick) => Boolean(tick?.run?.paused);
-
-export const stateWord = (tick) => (tick ? (paused(tick) && tick.rig !== "fault" ? "paused" : tick.rig) : "connecting");
+export const stateWord = (tick) => tick?.rig ?? "connecting";
 
 /** The reason in words; of several faults the first cause, as the rig gives it. */
 function reasonOf(tick) {

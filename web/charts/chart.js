@@ -95,8 +95,7 @@ function series({ unit, colour, style }, token) {
 }
 
 /** Dots at a few hertz: one a tick would hide the line under them. */
-function everyOther(plot, seriesIndex, show, gaps) {
-  void gaps;
+function everyOther(plot, seriesIndex, show) {
   if (!show) return null;
   const step = Math.max(1, Math.ceil((plot.data[0].length * 4) / plot.bbox.width));
   return plot.data[seriesIndex].map((_, index) => index).filter((index) => index % step === 0);

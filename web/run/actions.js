@@ -9,7 +9,7 @@ const START = {
 };
 const PAUSE = { label: "Pause", act: rig.pauseRun, hint: () => "Pause takes the field away and keeps the run." };
 const RESUME = {
-  label: "Resume", act: rig.resumeRun, hint: () => "The run is on hold with the coils at zero. Resume goes on with it.",
+  label: "Resume", act: rig.resumeRun, hint: () => "On hold with the coils at zero. Resume raises the field again and goes on.",
 };
 const ARM = { label: "Arm", act: rig.arm, hint: armHint };
 const RESET = { label: "Reset", act: rig.reset, hint: () => "The coils are at zero. Two steps lead back: reset, then arm." };
@@ -21,9 +21,7 @@ function armHint(tick, selection) {
 
 /** The next step from here. */
 function primary(tick) {
-  if (tick.rig === "fault") return RESET;
-  if (tick.run?.paused || (tick.rig === "held" && tick.run)) return RESUME;
-  return { disarmed: ARM, held: ARM, armed: START, running: PAUSE }[tick.rig] ?? ARM;
+  return { disarmed: ARM, armed: START, running: PAUSE, held: RESUME, fault: RESET }[tick.rig];
 }
 
 export function Actions() {

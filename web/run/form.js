@@ -30,7 +30,7 @@ export function Field({ id, form, value, onChange }) {
   };
   return html`
     <div class=${`field field-${form.kind}`} title=${hint}>
-      <label for=${own}>${form.title}</label>
+      <label for=${own}>${form.title}${form.kind === "points" && form.unit ? `, ${form.unit}` : ""}</label>
       <${CONTROLS[form.kind]} ...${control} />
       <span class="unseen" id=${`${own}-hint`}>${hint}</span>
       <p class="field-error" id=${`${own}-error`} aria-live="polite">${error}</p>

@@ -1,22 +1,29 @@
 /** The 3D scene: the server's own viewer in a frame of the same origin, loaded once the page stands. */
 import { stopOnKeysIn } from "../keys/keys.js";
 import { useStore } from "../store.js";
-import { html, useEffect, useState } from "../view.js";
+import { html, useEffect, useRef, useState } from "../view.js";
 
-/** Waits for the first telemetry and an idle moment: picture and STOP come first. */
-function useTurn() {
+const HEAD_START_MS = 400;
+
+/** Picture and STOP come first: true once there is telemetry, a moment has passed and the place is in view. */
+function useTurn(place) {
   const ready = useStore((state) => state.tick !== null);
   const [turn, setTurn] = useState(false);
   useEffect(() => {
     if (!ready) return undefined;
-    const timer = setTimeout(() => setTurn(true), 400);
-    return () => clearTimeout(timer);
+    const inView = new IntersectionObserver((entries) => entries.some((entry) => entry.isIntersecting) && setTurn(true));
+    const timer = setTimeout(() => inView.observe(place.current), HEAD_START_MS);
+    return () => {
+      clearTimeout(timer);
+      inView.disconnect();
+    };
   }, [ready]);
   return turn;
 }
 
 export function Scene() {
-  const turn = useTurn();
+  const place = useRef(null);
+  const turn = useTurn(place);
   const [loaded, setLoaded] = useState(false);
   const load = (event) => {
     setLoaded(true);
@@ -25,7 +32,7 @@ export function Scene() {
   return html`
     <section class="card scene" aria-labelledby="scene-title">
       <header class="card-head"><h2 id="scene-title">Scene</h2><span class="hint">drag to turn, scroll to zoom</span></header>
-      <div class="scene-frame">
+      <div class="scene-frame" ref=${place}>
         ${!loaded && html`<p class="scene-note">Loading the 3D scene…</p>`}
         ${turn && html`<iframe src="/scene/" title="3D scene of coils, field and robot" onLoad=${load}></iframe>`}
       </div>
