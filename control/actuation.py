@@ -45,7 +45,7 @@ class Actuation:
         self._coils = coils
         self._field = field
         self._settings = settings
-        self._door = threading.Lock()
+        self._door = threading.RLock()  # a signal handler may stop while its own thread stops
         self._stopped_from_outside = False
         self.saturated = False
         self.command = _idle("", PIVOT_A)

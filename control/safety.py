@@ -157,7 +157,7 @@ def assess(health: Health, limits: Limits) -> tuple[Finding, ...]:
 
 def _camera(health: Health) -> list[Finding]:
     if not health.frame_age <= FRAME_STALE:
-        return [Finding(Severity.HOLD, "camera", f"no frame for {_seconds(health.frame_age)}")]
+        return [Finding(Severity.HOLD, "camera", f"no frame {_for(health.frame_age)}")]
     if health.identical_frames >= FROZEN_FRAMES:
         message = f"the camera repeats one picture ({health.identical_frames} times)"
         return [Finding(Severity.HOLD, "frozen", message)]
@@ -169,13 +169,13 @@ def _camera(health: Health) -> list[Finding]:
 
 def _robot(health: Health, limits: Limits) -> list[Finding]:
     if health.tracking is Tracking.LOST or not health.tracking_age <= PREDICT_FOR:
-        return [Finding(Severity.HOLD, "lost", f"the robot was lost {_seconds(health.tracking_age)} ago")]
+        return [Finding(Severity.HOLD, "lost", "the robot is not seen, or not where it should be")]
     if health.pose is None or not health.pose.is_finite:
         return [Finding(Severity.HOLD, "lost", "the robot's pose is not known")]
     reach = max(abs(health.pose.x), abs(health.pose.y))
     where = f"the robot is at ({health.pose.x * 1e3:.1f}, {health.pose.y * 1e3:.1f}) mm"
     if not reach <= limits.hard:
-        return [Finding(Severity.HOLD, "outside", f"{where}, the limit is +-{limits.hard * 1e3:.0f} mm")]
+        return [Finding(Severity.HOLD, "outside", f"{where}, the limit is ±{limits.hard * 1e3:.0f} mm")]
     if not reach <= limits.soft:
         return [Finding(Severity.WARN, "margin", f"{where}, near the limit of the workspace")]
     return []
@@ -186,7 +186,7 @@ def _board(health: Health) -> list[Finding]:
         return [Finding(Severity.DISARM, "link", health.link_reason)]
     if not health.telemetry_age <= TELEMETRY_STALE:
         return [
-            Finding(Severity.DISARM, "telemetry", f"the board is silent for {_seconds(health.telemetry_age)}")
+            Finding(Severity.DISARM, "telemetry", f"no word from the board {_for(health.telemetry_age)}")
         ]
     if health.board_faults:
         return [Finding(Severity.LATCH, "board", f"the board reports: {', '.join(health.board_faults)}")]
@@ -198,5 +198,5 @@ def _board(health: Health) -> list[Finding]:
     return []
 
 
-def _seconds(age: float) -> str:
-    return f"{age:.2f} s" if math.isfinite(age) else "any time yet"
+def _for(age: float) -> str:
+    return f"for {age:.2f} s" if math.isfinite(age) else "yet"

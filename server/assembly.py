@@ -26,11 +26,15 @@ from server.settings import MM, MS, Coil, RigFile
 from vision.calibration import CameraModel
 from vision.cameras import open_camera
 from vision.detection import ColourRange, RegionFilter
-from vision.synthetic import AsFastAsItGoes, RealTime, SceneSettings, SyntheticCamera
+from vision.synthetic import AsFastAsItGoes, Pace, RealTime, SceneSettings, SyntheticCamera
 from vision.tracking import ColourTracker, TrackerSettings
 
 FULL_FIELD = 0.010
 """The field that `link.field_ramp_ms` brings up, T."""
+
+TOO_BUSY = 0.07
+"""A computer that simulates nothing for this long, s, has stopped the simulated world rather than made the rig late:
+with the camera's 35 ms and one frame, a longer gap would make a frame too old and a command expire."""
 
 _names = (f"rig-{number}" for number in itertools.count(1))
 
@@ -168,7 +172,13 @@ def _camera(settings: RigFile, model: CameraModel, world: World | None, realtime
         width=settings.robot.body_width_mm * MM,
         height=settings.robot.body_height_mm * MM,
     )
-    return SyntheticCamera(world, model, scene, RealTime() if realtime else AsFastAsItGoes())
+    return SyntheticCamera(world, model, scene, _pace(settings, realtime))
+
+
+def _pace(settings: RigFile, realtime: bool) -> Pace:
+    if not realtime:
+        return AsFastAsItGoes()
+    return RealTime(TOO_BUSY if settings.simulation.board == "twin" else None)
 
 
 def _tracker(settings: RigFile, model: CameraModel) -> ColourTracker:

@@ -38,7 +38,7 @@ class Pictures:
         Raises StreamEnded when the rig has stopped.
         """
         async with self._rig.updates.subscribe() as ticks:
-            while (frame := self._rig.frame) is None or frame.index == index:
+            while (frame := self._rig.frame) is None or frame.index == index or self._rig.updates.closed:
                 await ticks.get()
         return frame.index, await self.encoded(frame, view)
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import logging
 import secrets
 from collections import deque
 from collections.abc import Callable
@@ -25,7 +26,7 @@ from control.loop import Announcement, Ended
 from control.model import Frame
 from control.runs import Choice, Run, RunRequest, RunState, Selection
 from control.safety import Refused
-from control.snapshot import Snapshot
+from control.snapshot import RigState, Snapshot
 from control.trajectories import check_inside
 from control.trajectories.custom import TooManyPaths, save_path
 from control.trajectories.trajectory import points_of
@@ -37,6 +38,8 @@ from server.streams import Publisher, announcer
 from vision.calibration import CameraModel
 
 T = TypeVar("T")
+
+log = logging.getLogger(__name__)
 
 FRAME_TIMEOUT = 0.05
 """A tick happens at least this often, frame or not, s: half the age at which a camera counts as dead."""
@@ -123,9 +126,17 @@ class Rig:
                 self._tell()
         except asyncio.CancelledError:
             raise
-        except BaseException:
-            self._machine.stop_coils()
+        except BaseException as error:
+            self._fail(error)
             raise
+
+    def _fail(self, error: BaseException) -> None:
+        """The loop is broken for good: zero current, and say so to everybody who watches."""
+        self._machine.stop_coils()
+        log.exception("the control loop failed")
+        reason = f"the control loop failed ({error!r}); restart pivotrig"
+        self.snapshot = replace(self.snapshot, rig=RigState.FAULT, reason=reason)
+        self.updates.publish(self.snapshot)
 
     def _one_tick(self) -> Snapshot:
         frame = self._machine.camera.read(FRAME_TIMEOUT)

@@ -67,6 +67,9 @@ class Publisher(Generic[T]):
         await self._closed.wait()
 
     def publish(self, value: T) -> None:
+        """Nobody gets what is published after the end."""
+        if self.closed:
+            return
         if self._replay:
             self._last.append(value)
         for mailbox in self._mailboxes:

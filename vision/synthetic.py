@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import threading
 import time
 from collections import deque
@@ -61,24 +62,41 @@ class AsFastAsItGoes:
 
 
 class RealTime:
-    """The rig's clock is the computer's monotonic one, and the world keeps up with it."""
+    """The rig's clock is the computer's monotonic one, and the world keeps up with it.
 
-    def __init__(self) -> None:
+    stands_still: a computer that was too busy to look at the clock for this long, s, has not simulated
+    anything meanwhile, and the rig's clock stands still for that time instead of ageing frames and commands
+    that nobody could handle. None for a world with a board that runs by a clock of its own.
+    """
+
+    def __init__(self, stands_still: float | None = None) -> None:
         self.offset = 0.0
+        self._stands_still = math.inf if stands_still is None else stands_still
+        self._stood = 0.0
+        self._looked = time.monotonic()
         self._closed = threading.Event()
 
     def begin(self, world_time: float) -> None:
-        self.offset = time.monotonic() - world_time
+        self.offset = self._clock() - world_time
 
     def now(self, world_time: float) -> float:  # noqa: ARG002  # the world follows this clock
-        return time.monotonic()
+        return self._clock()
 
     def wait_until(self, rig_time: float) -> None:
         """Returns at `rig_time`, or at once when the camera is closed."""
-        self._closed.wait(max(0.0, rig_time - time.monotonic()))
+        self._closed.wait(max(0.0, rig_time - self._clock()))
+        self._looked = max(self._looked, rig_time)
 
     def close(self) -> None:
         self._closed.set()
+
+    def _clock(self) -> float:
+        now = time.monotonic() - self._stood
+        if now - self._looked > self._stands_still:
+            self._stood += now - self._looked
+            now = self._looked
+        self._looked = max(self._looked, now)
+        return self._looked
 
 
 @dataclass(slots=True)
@@ -170,9 +188,10 @@ class SyntheticCamera:
         return None
 
     def _pass_until(self, rig_time: float) -> None:
+        """Waits; then world and clock agree, so that a command finds the board at the time it is given."""
         self._pace.wait_until(rig_time)
         if not self._closed:
-            self._expose_until(rig_time)
+            self._expose_until(max(rig_time, self.now()))
 
     def _next_capture(self) -> float:
         """Capture time of the next exposure on the rig's clock, s."""

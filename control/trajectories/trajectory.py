@@ -62,7 +62,7 @@ def check_inside(trajectory: Trajectory, half_size: float) -> None:
     if not reach <= half_size:
         x, y = worst / MM
         raise OutsideWorkspace(
-            f"the path reaches ({x:.1f}, {y:.1f}) mm, the workspace ends at +-{half_size / MM:.0f} mm; "
+            f"the path reaches ({x:.1f}, {y:.1f}) mm, the workspace ends at ±{half_size / MM:.0f} mm; "
             "make it smaller or move it towards the centre"
         )
 

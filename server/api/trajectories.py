@@ -59,7 +59,7 @@ def inside(trajectory: Trajectory, rig: TheRig, where: tuple[str, ...]) -> None:
     try:
         check_inside(trajectory, half_size)
     except OutsideWorkspace as error:
-        allowed = f"within +-{half_size / MM:g} mm of the centre in x and y"
+        allowed = f"within ±{half_size / MM:g} mm of the centre in x and y"
         raise Rejected(invalid_field(where, str(error), allowed)) from None
 
 

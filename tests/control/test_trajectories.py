@@ -60,7 +60,7 @@ def test_waypoints_are_all_visited() -> None:
 
 
 def test_a_path_that_leaves_the_workspace_says_where() -> None:
-    with pytest.raises(OutsideWorkspace, match=r"70\.0.*\+-60 mm"):
+    with pytest.raises(OutsideWorkspace, match=r"70\.0.*±60 mm"):
         check_inside(trajectories.build("line", {"end_x_mm": 70.0}), 0.06)
 
 

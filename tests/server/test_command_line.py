@@ -73,7 +73,7 @@ def test_without_json_the_figures_are_a_table() -> None:
         (["--path-step", "-0.1"], "path_step_s"),
         (["--duration", "-3"], "duration_s"),
         (["--plant", "rubber"], "plant"),
-        (["--trajectory", "circle", "--set", "trajectory.radius_mm=70"], "the workspace ends at +-60 mm"),
+        (["--trajectory", "circle", "--set", "trajectory.radius_mm=70"], "the workspace ends at ±60 mm"),
         (["--rig", "/nowhere/rig.toml"], "No such file"),
     ],
 )

@@ -151,7 +151,7 @@ def test_arming_brings_the_field_up_without_turning_the_robot(bench: Bench) -> N
 def test_a_rig_that_does_not_see_its_robot_does_not_arm(bench: Bench) -> None:
     bench.disturbance.hidden = True
     bench.run_for(0.5)
-    with pytest.raises(Refused, match="lost"):
+    with pytest.raises(Refused, match="not seen"):
         bench.loop.arm(GAIT)
     assert bench.snapshot.rig is RigState.DISARMED
     assert bench.board.drive_is_zero

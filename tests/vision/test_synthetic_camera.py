@@ -191,3 +191,26 @@ def test_closing_ends_a_read_that_waits():
     assert source.read(10.0) is None
     assert source.read(10.0) is None
     closing.join()
+
+
+def test_a_busy_computer_stops_the_world_instead_of_ageing_its_frames():
+    source = SyntheticCamera(ScriptedWorld(), OPTICS, SCENE, RealTime(stands_still=0.07))
+    for _ in range(5):
+        source.read(0.1)
+    before = source.now()
+    time.sleep(0.25)
+    after = source.now()
+    assert after - before < 0.02
+    frame = source.read(0.1)
+    assert frame is not None
+    assert source.now() - frame.captured_at < 0.1
+    source.close()
+
+
+def test_a_board_with_its_own_clock_is_never_made_to_wait():
+    source = SyntheticCamera(ScriptedWorld(), OPTICS, SCENE, RealTime())
+    source.read(0.1)
+    before = source.now()
+    time.sleep(0.15)
+    assert source.now() - before >= 0.15
+    source.close()
