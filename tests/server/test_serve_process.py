@@ -122,9 +122,7 @@ def test_an_address_that_others_can_reach_is_refused(tmp_path: Path) -> None:
         ("[coils.x]\ndiameter_mm = 390\n", "coils.x.turns: Field required"),
     ],
 )
-def test_a_rig_file_that_cannot_be_used_says_where_and_why(
-    tmp_path: Path, text: str, complaint: str
-) -> None:
+def test_a_rig_file_that_cannot_be_used_says_where_and_why(tmp_path: Path, text: str, complaint: str) -> None:
     rig_file = tmp_path / "rig.toml"
     rig_file.write_text(text)
     answer = serve("--rig", str(rig_file), "--data", str(tmp_path))
