@@ -27,7 +27,8 @@ GATE = 16.27
 class EstimatorSettings:
     """Standard deviations (m, rad). measured: of one sighting.  drift: per root second at rest.
 
-    slip: of the position, per pivot switch.  swing, loose: of the heading, per radian that the field turns, once
+    free_position, free_heading: the same while no field holds the robot: currents that decay drag it along for a
+    moment, and people push it.  slip: of the position, per pivot switch.  swing, loose: of the heading, per radian that the field turns, once
     it surely pulls the body along, and while it may still be taking up the play after a reversal.
     actuation_delay: from a field command to the body's answer, s (serial line and coil currents).
     lift_ratio: 2 m B / (W L), how far the free end rises (`control.model.body_tilt`).
@@ -37,6 +38,8 @@ class EstimatorSettings:
     measured_heading: float = math.radians(0.35)
     drift_position: float = 0.0002
     drift_heading: float = math.radians(2.0)
+    free_position: float = 0.010
+    free_heading: float = 1.0
     slip: float = 0.0005
     swing: float = 0.12
     loose: float = 0.6
@@ -180,7 +183,7 @@ class Estimator:
         """Arrival, grip, Jacobian and process noise of the body's motion from `start` to `end`."""
         delay = self._settings.actuation_delay
         departure, grip = self._pose(), self._grip
-        arrival, noise = departure, _Noise(self._settings, end - start)
+        arrival, noise = departure, _Noise(self._settings, end - start, self._field.is_on)
         pivot: Pivot | None = None
         for turn in self._field.turns(start - delay, end - delay):
             held = grip.after(turn.angle, self.half_play)
@@ -195,11 +198,11 @@ class Estimator:
 class _Noise:
     """Process noise gathered along one piece of motion."""
 
-    def __init__(self, settings: EstimatorSettings, elapsed: float) -> None:
-        elapsed = max(elapsed, 0.0)
+    def __init__(self, settings: EstimatorSettings, elapsed: float, is_held: bool) -> None:
+        s, elapsed = settings, max(elapsed, 0.0)
         self._settings = settings
-        self._position = settings.drift_position**2 * elapsed
-        self._heading = settings.drift_heading**2 * elapsed
+        self._position = (s.drift_position if is_held else s.free_position) ** 2 * elapsed
+        self._heading = (s.drift_heading if is_held else s.free_heading) ** 2 * elapsed
 
     def turn(self, angle: float, is_tight: bool) -> None:
         share = self._settings.swing if is_tight else self._settings.loose

@@ -63,6 +63,11 @@ class FieldModel:
         self._corners: deque[Corner] = deque(maxlen=HISTORY)
 
     @property
+    def ramp(self) -> float:
+        """How long a full change of pivot takes, s; the heading is held meanwhile."""
+        return self._ramp
+
+    @property
     def heading(self) -> float:
         return self._heading
 
@@ -74,6 +79,11 @@ class FieldModel:
     def pivot(self) -> Pivot:
         """The end that the field presses down."""
         return PIVOT_B if self._elevation > 0.0 else PIVOT_A
+
+    @property
+    def is_on(self) -> bool:
+        """The board drives; off, nothing holds the body."""
+        return self._on
 
     @property
     def is_settled(self) -> bool:

@@ -108,6 +108,7 @@ class ControlLoop:
         self._reason = "ready to arm"
         self._findings: tuple[Finding, ...] = ()
         self._since: dict[str, float] = {}
+        self._latched: Fault | None = None
         self._walk: Walk | None = None
         self._gait = Gait()
         self._tick = 0
@@ -144,7 +145,7 @@ class ControlLoop:
         self._require_fit()
         self._gait = gait
         self._energise()
-        self._enter(state, "armed", "info")
+        self._enter(state, "ready to start", "info")
 
     def disarm(self, reason: str = "disarmed by the operator") -> None:
         """Zero the coils and end the run; nothing to do when disarmed already."""
@@ -170,6 +171,7 @@ class ControlLoop:
         if self._telemetry is not None and self._telemetry.faults:
             self._parts.link.greet()
         self._parts.actuation.allow()
+        self._latched = None
         self._enter(state, "reset; arm to go on", "info")
 
     def start(self, id: str, request: RunRequest) -> None:
@@ -178,6 +180,7 @@ class ControlLoop:
         pose = self._require_fit()
         walk = Walk(id, request, self._parts.length, self._parts.field.pivot, pose.heading)
         check_inside(walk.trajectory, self._parts.coils.workspace)
+        walk.workspace = self._parts.coils.workspace
         self._walk = walk
         self._gait = request.selection.gait
         self._enter(state, "walking", "info")
@@ -212,7 +215,7 @@ class ControlLoop:
         pose = self._require_fit()
         self._energise()
         if self._walk is None:
-            self._enter(RigState.ARMED, "armed", "info")
+            self._enter(RigState.ARMED, "ready to start", "info")
             return
         self._walk.walker.resume(pose.heading)
         self._enter(state, "walking", "info")
@@ -235,7 +238,7 @@ class ControlLoop:
             self._drive(now, gap)
         if frame is not None:
             self._timing.bytes_out()
-        return self._snapshot(frame)
+        return self._snapshot()
 
     def _hear(self, now: float) -> None:
         telemetry = self._parts.link.poll()
@@ -356,6 +359,7 @@ class ControlLoop:
     def _latch(self, code: str, reason: str) -> None:
         self._stop_coils()
         self._end_run(RunState.ABORTED, reason)
+        self._latched = Fault(code, reason, self._now)
         self._enter(after(self._state, Event.LATCH), reason, "error", code)
 
     def _end_run(self, state: RunState, reason: str) -> None:
@@ -372,17 +376,17 @@ class ControlLoop:
 
     # What everybody may see ----------------------------------------------------------------------
 
-    def _snapshot(self, frame: Frame | None) -> Snapshot:
+    def _snapshot(self) -> Snapshot:
         parts, telemetry, walk, pose = self._parts, self._telemetry, self._walk, self._pose
         currents = telemetry.currents if telemetry is not None else ZERO
         reference = walk.reference if walk is not None else None
         return Snapshot(
             tick=self._tick,
             time=self._now,
-            captured_at=frame.captured_at if frame is not None else None,
+            captured_at=parts.perception.frame.captured_at if parts.perception.frame is not None else None,
             rig=self._state,
             reason=self._why(),
-            faults=tuple(Fault(f.code, f.message, self._since[f.code]) for f in self._findings),
+            faults=self._faults(),
             simulated=parts.simulated,
             pose=pose,
             pose_sigma=self._sigma,
@@ -403,6 +407,11 @@ class ControlLoop:
             timing=self._timing.figures(),
             link=parts.link.status,
         )
+
+    def _faults(self) -> tuple[Fault, ...]:
+        """The latched cause first, then everything that is wrong now, most severe first."""
+        current = tuple(Fault(f.code, f.message, self._since[f.code]) for f in self._findings)
+        return current if self._latched is None else (self._latched, *current)
 
     def _why(self) -> str:
         """The reason of the state; while disarmed, what stands in the way of arming."""

@@ -98,7 +98,7 @@ class RunProgress:
 class Snapshot:
     """One tick.
 
-    time: rig time of this tick, s.  captured_at: capture time of its frame, s, None without a frame.
+    time: rig time of this tick, s.  captured_at: capture time of the newest frame, s, None before the first one.
     pose: the estimate carried forward to `time`; None while the robot has not been found.
     pose_sigma: its standard deviations (m, m, rad).
     tracking_age: time since the last accepted measurement, s (inf before the first one).

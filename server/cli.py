@@ -125,7 +125,7 @@ def _run(rig_file: RigFile, request: RunRequest, as_json: bool) -> None:
     try:
         machine = build_machine(rig_file, realtime=not rig_file.is_simulated)
         id = new_id()
-        with _progress() as (progress, task):
+        with _Progress() as (progress, task):
             done = run_headless(machine, id, request, lambda snapshot: _show(progress, task, snapshot))
     except (Refused, LinkError, CameraError) as error:
         raise fail(str(error), REFUSED) from error
@@ -201,7 +201,7 @@ def _request(
     return replace(RunRequest(selection), passes=body.passes, duration=body.duration_s)
 
 
-class _progress:
+class _Progress:
     """A progress bar on stderr that stays away when nobody looks at a terminal."""
 
     def __init__(self) -> None:

@@ -30,8 +30,8 @@ from control.snapshot import RigState, Snapshot
 from control.trajectories import check_inside
 from control.trajectories.custom import TooManyPaths, save_path
 from control.trajectories.trajectory import points_of
-from server.api.runs import run_json
 from server.api.choices import selection_json
+from server.api.runs import run_json
 from server.assembly import Machine
 from server.settings import RigFile
 from server.streams import Publisher, announcer

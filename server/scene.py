@@ -113,7 +113,7 @@ class Scene:
         scene.configure_environment_map(None)
         scene.configure_default_lights(enabled=True, cast_shadow=False)
         scene.add_light_ambient("/ambient", intensity=1.6)
-        camera.position = (6.0, -29.0, 24.0)
+        camera.position = (9.0, -43.0, 33.0)
         camera.look_at = (0.0, 0.0, -1.0)
         camera.up = (0.0, 0.0, 1.0)
         camera.fov = math.radians(36.0)

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import contextlib
 import errno
 import ipaddress
 import signal
 import socket
-import sys
 import webbrowser
-from collections.abc import Iterator
 from pathlib import Path
 from types import FrameType
 
@@ -43,7 +40,7 @@ def serve_rig(settings: RigFile, host: str, port: int, data: Path | None, open_b
         listener.close()
         raise ServeError(str(error)) from error
     address = _address(listener)
-    server = _Server(machine, address, host, open_browser)
+    server = _Server(machine, address, open_browser)
     with listener:
         server.run(sockets=[listener])
     if server.failure is not None:
@@ -53,7 +50,7 @@ def serve_rig(settings: RigFile, host: str, port: int, data: Path | None, open_b
 class _Server(uvicorn.Server):
     """uvicorn, but a signal zeroes the coils before anything else, and readiness is announced."""
 
-    def __init__(self, machine: Machine, address: str, host: str, open_browser: bool) -> None:
+    def __init__(self, machine: Machine, address: str, open_browser: bool) -> None:
         self._rig = Rig(machine)
         self._address = address
         self._open_browser = open_browser

@@ -164,7 +164,9 @@ class SlipPlant:
         sweep = self._heading - self._sweep_start
         # Walking is forward when the pivot's sign and the turn's agree (paper, section 2).
         direction = self._pivot * math.copysign(1.0, sweep) if sweep else 0.0
-        forward = direction * (slip.forward_base + slip.forward_per_sweep * min(abs(sweep), LONGEST_FITTED_SWEEP))
+        forward = direction * (
+            slip.forward_base + slip.forward_per_sweep * min(abs(sweep), LONGEST_FITTED_SWEEP)
+        )
         self._slide(
             towards_a=pivot * self._random.gauss(slip.out, slip.out_sd),
             forward=self._random.gauss(forward, slip.forward_sd),

@@ -89,7 +89,7 @@ def offences(errors: Iterable[Mapping[str, Any]], prefix: tuple[str | int, ...] 
 
 def location(error: Mapping[str, Any], prefix: tuple[str | int, ...]) -> tuple[Any, ...]:
     where = tuple(error.get("loc", ()))
-    if error["type"] == "json_invalid":
+    if error["type"] == "json_invalid" or where == ("body",):
         return (*prefix, "body")
     return (*prefix, *(where[1:] if where[:1] in (("body",), ("query",), ("path",)) else where))
 

@@ -233,6 +233,14 @@ def test_the_emergency_stop_latches_and_two_acts_lead_back(bench: Bench) -> None
     assert bench.run_for(0.5).rig is RigState.ARMED
 
 
+def test_the_robot_stays_in_sight_while_the_field_collapses(bench: Bench) -> None:
+    bench.walk()
+    bench.loop.estop()
+    for _ in range(60):
+        assert bench.tick().tracking is not Tracking.LOST
+    assert bench.snapshot.faults[0].code == "estop"
+
+
 def test_a_pause_holds_and_the_reference_waits(bench: Bench) -> None:
     bench.walk()
     bench.loop.pause()

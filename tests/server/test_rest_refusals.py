@@ -162,3 +162,8 @@ async def test_a_page_of_runs_that_cannot_be_is_refused(api, query):
     answer = await api.get(f"/runs?{query}")
     assert answer.status_code in (404, 422)
     assert answer.headers["content-type"] == "application/problem+json"
+
+
+async def test_a_missing_body_is_named_as_such(api):
+    problem = await refused(api, "PUT", "/selection", "")
+    assert problem["errors"] == [{"loc": ["body"], "field": "body", "message": "is missing"}]

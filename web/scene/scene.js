@@ -4,6 +4,7 @@ import { useStore } from "../store.js";
 import { html, useEffect, useRef, useState } from "../view.js";
 
 const HEAD_START_MS = 400;
+const DARK = matchMedia("(prefers-color-scheme: dark)");
 
 /** Picture and STOP come first: true once there is telemetry, a moment has passed and the place is in view. */
 function useTurn(place) {
@@ -34,7 +35,7 @@ export function Scene() {
       <header class="card-head"><h2 id="scene-title">Scene</h2><span class="hint">drag to turn, scroll to zoom</span></header>
       <div class="scene-frame" ref=${place}>
         ${!loaded && html`<p class="scene-note">Loading the 3D scene…</p>`}
-        ${turn && html`<iframe src="/scene/" title="3D scene of coils, field and robot" onLoad=${load}></iframe>`}
+        ${turn && html`<iframe src=${DARK.matches ? "/scene/?darkMode" : "/scene/"} title="3D scene of coils, field and robot" onLoad=${load}></iframe>`}
       </div>
     </section>
   `;
