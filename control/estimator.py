@@ -25,11 +25,12 @@ GATE = 16.27
 
 @dataclass(frozen=True, slots=True)
 class EstimatorSettings:
-    """Standard deviations (m, rad). measured: of one sighting.  drift: per root second at rest.
+    """Standard deviations, m and rad.
 
-    free_position, free_heading: the same while no field holds the robot: currents that decay drag it along for a
-    moment, and people push it.  slip: of the position, per pivot switch.  swing, loose: of the heading, per radian that the field turns, once
-    it surely pulls the body along, and while it may still be taking up the play after a reversal.
+    measured: of one sighting.  drift: per root second at rest.  free: the same while no field holds the robot,
+    when decaying currents drag it along for a moment, and people push it.
+    slip: of the position, per pivot switch.  swing: of the heading, per radian that the field turns once it
+    surely pulls the body along.  loose: the same while it may still be taking up the play after a reversal.
     actuation_delay: from a field command to the body's answer, s (serial line and coil currents).
     lift_ratio: 2 m B / (W L), how far the free end rises (`control.model.body_tilt`).
     """
