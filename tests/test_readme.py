@@ -1,0 +1,66 @@
+"""What the README tells people to type works as it stands."""
+
+import re
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from server.settings import RigFile, load_rig_file
+from tests.processes import served
+
+ROOT = Path(__file__).parent.parent
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+
+
+def blocks(language: str) -> list[str]:
+    return re.findall(rf"^```{language}\n(.*?)^```", README, re.MULTILINE | re.DOTALL)
+
+
+def runs() -> list[str]:
+    lines = "\n".join(blocks("sh")).splitlines()
+    return [line.split("#")[0].strip() for line in lines if line.startswith("pivotrig run")]
+
+
+@pytest.mark.parametrize("line", runs())
+def test_each_run_of_the_readme_works(line: str) -> None:
+    command = [sys.executable, "-m", "server", *shlex.split(line)[1:], "--duration", "3"]
+    answer = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
+    assert answer.returncode == 0, answer.stderr
+
+
+def test_the_script_of_the_readme_works(tmp_path: Path) -> None:
+    (script,) = blocks("python")
+    with served(tmp_path, "--sim") as server:
+        server.until(lambda state: state["tracking"] == "locked" and not state["faults"])
+        here = script.replace("http://127.0.0.1:8000", server.address)
+        answer = subprocess.run(
+            [sys.executable, "-c", here], capture_output=True, text=True, timeout=60, check=False
+        )
+        assert answer.returncode == 0, answer.stderr
+        assert "x_mm" in answer.stdout
+        assert server.get("/state")["rig"] == "fault"
+
+
+def test_the_rig_file_of_the_readme_is_valid(tmp_path: Path) -> None:
+    (text,) = blocks("toml")
+    rig_file = tmp_path / "rig.toml"
+    rig_file.write_text(text)
+    assert load_rig_file(rig_file).name == "Bench 2"
+
+
+def test_the_example_rig_file_shows_every_default() -> None:
+    example = load_rig_file(ROOT / "rig.example.toml")
+    assert example == RigFile()
+    text = (ROOT / "rig.example.toml").read_text(encoding="utf-8")
+    for section in RigFile().model_dump().values():
+        if isinstance(section, dict):
+            assert all(f"{name} =" in text or f"[coils.{name}]" in text for name in section)
+
+
+def test_the_make_targets_of_the_readme_exist() -> None:
+    makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
+    for target in set(re.findall(r"make ([a-z-]+)", README)) - {"it"}:
+        assert re.search(rf"^{target}:", makefile, re.MULTILINE), target
