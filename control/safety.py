@@ -185,9 +185,7 @@ def _board(health: Health) -> list[Finding]:
     if not health.link_ready:
         return [Finding(Severity.DISARM, "link", health.link_reason)]
     if not health.telemetry_age <= TELEMETRY_STALE:
-        return [
-            Finding(Severity.DISARM, "telemetry", f"no word from the board {_for(health.telemetry_age)}")
-        ]
+        return [Finding(Severity.DISARM, "telemetry", f"no word from the board {_for(health.telemetry_age)}")]
     if health.board_faults:
         return [Finding(Severity.LATCH, "board", f"the board reports: {', '.join(health.board_faults)}")]
     if not health.not_driving <= NOT_DRIVING:
