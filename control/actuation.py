@@ -7,7 +7,6 @@ from outside the loop, no drive leaves until it is cleared by a deliberate reset
 from __future__ import annotations
 
 import math
-import threading
 from dataclasses import dataclass
 from typing import Literal
 
@@ -45,16 +44,14 @@ class Actuation:
         self._coils = coils
         self._field = field
         self._settings = settings
-        self._door = threading.RLock()  # a signal handler may stop while its own thread stops
         self._stopped_from_outside = False
         self.saturated = False
         self.command = _idle("", PIVOT_A)
 
     def stop_from_outside(self) -> None:
-        """Zero now, from any thread, and keep it so until `allow` is called."""
-        with self._door:
-            self._stopped_from_outside = True
-            self._link.stop()
+        """Zero now, from any thread or signal handler, and keep it so until `allow` is called; never waits."""
+        self._stopped_from_outside = True
+        self._link.stop()
 
     @property
     def stopped_from_outside(self) -> bool:
@@ -100,9 +97,10 @@ class Actuation:
             time_to_live=self._settings.time_to_live,
             start_heading=start_heading,
         )
-        with self._door:
-            if not self._stopped_from_outside:
-                self._link.drive(drive)
+        if not self._stopped_from_outside:
+            self._link.drive(drive)
+        if self._stopped_from_outside:
+            self._link.stop()  # it may have come between the question and the command
 
     def _allocation(self, pose: Pose) -> Matrix:
         if self._settings.allocation == "centre":

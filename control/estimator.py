@@ -21,18 +21,20 @@ from control.snapshot import Vector
 
 GATE = 16.27
 """99.9 % point of chi-squared with three degrees of freedom."""
+LIFT_FIELD = 0.010
+"""The field at which the lift ratio is given, T: it grows with the field."""
 
 
 @dataclass(frozen=True, slots=True)
 class EstimatorSettings:
     """Standard deviations, m and rad.
 
-    measured: of one sighting.  drift: per root second at rest.  free: the same while no field holds the robot,
-    when decaying currents drag it along for a moment, and people push it.
+    measured: of one sighting.  drift: per root second at rest.  free: the same while no full field holds the robot,
+    when rising or decaying currents drag it along, and people push it.
     slip: of the position, per pivot switch.  swing: of the heading, per radian that the field turns once it
     surely pulls the body along.  loose: the same while it may still be taking up the play after a reversal.
     actuation_delay: from a field command to the body's answer, s (serial line and coil currents).
-    lift_ratio: 2 m B / (W L), how far the free end rises (`control.model.body_tilt`).
+    lift_ratio: 2 m B / (W L) at 10 mT, how far the free end rises (`control.model.body_tilt`).
     """
 
     measured_position: float = 0.00004
@@ -126,8 +128,8 @@ class Estimator:
         self._known = True
 
     def expect(self, time: float) -> Expectation | None:
-        """Predict to the capture time of the frame that is about to be searched."""
-        if not self._known or time < self._time:
+        """Predict to the capture time of the frame that is about to be searched; None when nothing is known."""
+        if not self._known:
             return None
         pose, self._grip, jacobian, noise = self._motion(self._time, time)
         self._filter.arrival = np.array([pose.x, pose.y, pose.heading])
@@ -135,18 +137,20 @@ class Estimator:
         self._filter.Q = noise
         self._filter.predict()
         self._time = time
-        elevation = self._field.elevation_at(time - self._settings.actuation_delay)
+        at = time - self._settings.actuation_delay
+        elevation = self._field.elevation_at(at)
+        lift_ratio = self._settings.lift_ratio * self._field.strength_at(at) / LIFT_FIELD
         return Expectation(
             pose,
             position_sigma=math.sqrt(max(self._filter.P[0, 0], self._filter.P[1, 1])),
             pivot=PIVOT_B if elevation > 0.0 else PIVOT_A,
-            tilt=body_tilt(abs(elevation), self._settings.lift_ratio),
+            tilt=body_tilt(abs(elevation), lift_ratio),
         )
 
     def correct(self, measurement: Measurement) -> bool:
         """Fuse a sighting made at the time of the last `expect`; False when the gate refuses it."""
         z = np.array([measurement.pose.x, measurement.pose.y, measurement.pose.heading])
-        if not np.isfinite(z).all() or self.distance(z) > GATE:
+        if not np.isfinite(z).all() or not self.distance(z) <= GATE:
             return False
         self._filter.update(z, _jacobian_of_sighting, _sighting, residual=_residual)
         self.last_accepted = measurement.captured_at
@@ -184,7 +188,7 @@ class Estimator:
         """Arrival, grip, Jacobian and process noise of the body's motion from `start` to `end`."""
         delay = self._settings.actuation_delay
         departure, grip = self._pose(), self._grip
-        arrival, noise = departure, _Noise(self._settings, end - start, self._field.is_on)
+        arrival, noise = departure, _Noise(self._settings, end - start, self._field.is_ready)
         pivot: Pivot | None = None
         for turn in self._field.turns(start - delay, end - delay):
             held = grip.after(turn.angle, self.half_play)

@@ -58,6 +58,7 @@ class FieldModel:
         self._target_elevation = 0.0
         self._rate = 0.0
         self._goal = 0.0
+        self._strength = 0.0
         self._full_at = math.inf
         self._offset = math.inf
         self._corners: deque[Corner] = deque(maxlen=HISTORY)
@@ -81,11 +82,6 @@ class FieldModel:
         return PIVOT_B if self._elevation > 0.0 else PIVOT_A
 
     @property
-    def is_on(self) -> bool:
-        """The board drives; off, nothing holds the body."""
-        return self._on
-
-    @property
     def is_settled(self) -> bool:
         """Full strength, elevation on its target and the heading on its goal: the field stands still."""
         return self.is_ready and self._elevation == self._target_elevation and self._heading == self._goal
@@ -102,6 +98,7 @@ class FieldModel:
         self._heading = self._goal = heading
         self._elevation = self._target_elevation = -pivot * tilt
         self._rate = 0.0
+        self._strength = strength
         self._full_at = time + strength / self._field_slew
         self._corners.clear()
         self._corners.append(Corner(time, heading, self._elevation))
@@ -184,6 +181,12 @@ class FieldModel:
     def elevation_at(self, time: float) -> float:
         """The field's elevation at a recent `time`, rad: positive presses on B; 0 while it was off."""
         return self._at(time).elevation
+
+    def strength_at(self, time: float) -> float:
+        """How strong the field was at a recent `time`, T, as it comes up from zero after the arm edge."""
+        if not self._on:
+            return 0.0
+        return max(0.0, min(self._strength, self._strength - (self._full_at - time) * self._field_slew))
 
     def _at(self, time: float) -> Corner:
         later: Corner | None = None

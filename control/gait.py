@@ -8,26 +8,48 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from enum import StrEnum
 
 from control.model import Pivot
 
 REFERENCE_TICK = 0.1
 """The paper's control tick, s: the reference moves on by the path step once per such tick."""
+ROUNDING = 1e-9
+"""A step that is missing by rounding alone is not taken."""
+
+
+class TimeLaw(StrEnum):
+    """How the reference moves along its path; see `control.trajectories.time_law`."""
+
+    PATH_STEP = "path_step"
+    CONSTANT_SPEED = "constant_speed"
+    TRAPEZOIDAL = "trapezoidal"
+    WAIT = "wait"
 
 
 @dataclass(frozen=True, slots=True)
 class Gait:
-    """How to walk. sweep, tilt: rad.  field: T.  max_rate: rad/s.  path_step: the paper's Delta t, s."""
+    """How to walk. sweep, tilt: rad.  field: T.  max_rate: rad/s.
+
+    time_law: how the reference moves.  path_step: the paper's Delta t, s.  speed: of the reference by the other
+    laws, m/s.  acceleration: m/s^2.  wait_distance: how far ahead of the robot it goes when it waits, m.
+    approach: walk straight to the start of the path before the path begins.
+    """
 
     sweep: float = math.radians(30.0)
     tilt: float = math.radians(25.0)
     field: float = 0.010
     max_rate: float = 2.0
     path_step: float = 0.1
+    time_law: TimeLaw = TimeLaw.PATH_STEP
+    speed: float = 0.003
+    acceleration: float = 0.002
+    wait_distance: float = 0.005
+    approach: bool = False
 
     @property
     def reference_speed(self) -> float:
-        """Seconds of reference per second of rig time."""
+        """Seconds of the path's own clock per second of rig time, by the law of the path step."""
         return self.path_step / REFERENCE_TICK
 
 
@@ -91,3 +113,17 @@ class Sweep:
 def advance_of_sweep(sweep: float, length: float) -> float:
     """Straight-line advance of the centre in one full sweep, m: L sin(sweep / 2) (paper, section 3)."""
     return length * math.sin(sweep / 2.0)
+
+
+def steps_for_distance(distance: float, sweep: float, length: float) -> int:
+    """Steps that a straight walk of `distance` (m) takes, the half one at the start included.
+
+    ceil(D / (L sin(sweep / 2)) + 1/2) (paper, section 3, made exact): the first step advances half as far as
+    the others. Fewest near 180 degrees; without end at 0 and 360, where no step advances.
+    """
+    return math.ceil(distance / advance_of_sweep(sweep, length) + 0.5 - ROUNDING)
+
+
+def detour(sweep: float) -> float:
+    """Way that the centre travels per way that it gets on: (sweep / 2) / sin(sweep / 2) (paper, section 3)."""
+    return (sweep / 2.0) / math.sin(sweep / 2.0)

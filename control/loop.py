@@ -33,6 +33,7 @@ from control.safety import (
     Severity,
     after,
     assess,
+    check_gait,
 )
 from control.snapshot import ZERO, Fault, RigState, Snapshot, Vector
 from control.timing import TimingLog
@@ -124,10 +125,9 @@ class ControlLoop:
     def state(self) -> RigState:
         return self._state
 
-    @property
-    def field_is_ready(self) -> bool:
-        """The field is up at full strength."""
-        return self._parts.field.is_ready
+    def field_at(self, time: float) -> tuple[float, float]:
+        """Heading (unwrapped) and elevation of the field at a recent rig time (s), rad."""
+        return self._parts.field.heading_at(time), self._parts.field.elevation_at(time)
 
     def take_announcements(self) -> list[Announcement]:
         """What happened since the last call, oldest first."""
@@ -142,6 +142,7 @@ class ControlLoop:
     def arm(self, gait: Gait) -> None:
         """Bring the field up along the robot's heading; raises `Refused`."""
         state = after(self._state, Event.ARM)
+        check_gait(gait, self._parts.limits)
         self._require_fit()
         self._gait = gait
         self._energise()
@@ -177,8 +178,9 @@ class ControlLoop:
     def start(self, id: str, request: RunRequest) -> None:
         """Start a run; raises `Refused`, or what a bad selection raises."""
         state = after(self._state, Event.START)
+        check_gait(request.selection.gait, self._parts.limits)
         pose = self._require_fit()
-        walk = Walk(id, request, self._parts.length, self._parts.field.pivot, pose.heading)
+        walk = Walk(id, request, self._parts.length, self._parts.field.pivot, pose)
         check_inside(walk.trajectory, self._parts.coils.workspace)
         walk.workspace = self._parts.coils.workspace
         self._walk = walk
@@ -189,6 +191,7 @@ class ControlLoop:
         """Another controller, trajectory or gait for the run that is on; raises like `start`."""
         if self._walk is None:
             raise Refused("there is no run to change; start one first")
+        check_gait(selection.gait, self._parts.limits)
         check_inside(selection.build_trajectory(), self._parts.coils.workspace)
         self._walk.change(selection)
         self._gait = selection.gait
@@ -253,6 +256,11 @@ class ControlLoop:
         if self._currents_agree(telemetry):
             self._agreed_at = now
 
+    @property
+    def _is_engaged(self) -> bool:
+        """Driving, or holding a run or a place that may be resumed."""
+        return self._state in ENERGISED or self._state is RigState.HELD
+
     def _currents_agree(self, telemetry: Telemetry) -> bool:
         pairs = zip(telemetry.currents, telemetry.measured_currents, self._parts.limits.currents, strict=True)
         return all(
@@ -277,6 +285,7 @@ class ControlLoop:
     def _health(self, gap: float, now: float) -> Health:
         perception, link, telemetry = self._parts.perception, self._parts.link, self._telemetry
         frame = perception.frame
+        heard_at = telemetry.received_at if telemetry is not None else now
         return Health(
             tick_gap=gap,
             frame_age=now - self._frame_at if frame is not None else math.inf,
@@ -287,11 +296,12 @@ class ControlLoop:
             pose=self._pose,
             link_ready=link.is_ready,
             link_reason=link.reason,
+            link_incident=link.incident if self._is_engaged and telemetry is not None else "",
             telemetry_age=now - telemetry.received_at if telemetry is not None else math.inf,
             board_faults=telemetry.faults if telemetry is not None else (),
-            not_driving=now - self._driving_at if self._state in ENERGISED else 0.0,
+            not_driving=heard_at - self._driving_at if self._state in ENERGISED else 0.0,
             board_state=telemetry.state.value if telemetry is not None else "",
-            current_mismatch=now - self._agreed_at,
+            current_mismatch=heard_at - self._agreed_at if self._state in ENERGISED else 0.0,
         )
 
     def _drive(self, now: float, gap: float) -> None:
@@ -304,6 +314,8 @@ class ControlLoop:
             self._parts.actuation.drive(name, stride, pose, self._gait)
         except ControllerFault as fault:
             self._latch("controller", str(fault))
+        except ValueError as error:
+            self._latch("command", f"the field cannot be commanded: {error}")
         except LinkError as error:
             self._lose(Finding(Severity.DISARM, "link", str(error)))
         if self._walk is not None and self._state is RigState.RUNNING and self._walk.is_over:
@@ -410,8 +422,10 @@ class ControlLoop:
 
     def _faults(self) -> tuple[Fault, ...]:
         """The latched cause first, then everything that is wrong now, most severe first."""
-        current = tuple(Fault(f.code, f.message, self._since[f.code]) for f in self._findings)
-        return current if self._latched is None else (self._latched, *current)
+        latched = self._latched
+        current = (Fault(f.code, f.message, self._since[f.code]) for f in self._findings)
+        others = tuple(fault for fault in current if latched is None or fault.code != latched.code)
+        return others if latched is None else (latched, *others)
 
     def _why(self) -> str:
         """The reason of the state; while disarmed, what stands in the way of arming."""

@@ -9,7 +9,7 @@ from control.backlash import Backlash
 from control.estimator import Estimator, EstimatorSettings
 from control.field_model import FieldModel
 from control.model import Expectation, Frame, Measurement, Observation, Pose, Tracking, wrap
-from control.safety import FROZEN_FRAMES, PREDICT_FOR
+from control.safety import PREDICT_FOR
 from control.snapshot import ZERO, Vector
 
 THUMBNAIL = 16
@@ -43,19 +43,19 @@ class Perception:
         self._thumbnail = b""
 
     def look(self, frame: Frame) -> None:
-        """Search one frame and correct the estimate; a repeated picture is not looked at.
+        """Search one frame and correct the estimate; a repeated or an older picture is not looked at.
 
         A robot that stays away from its prediction is lost for at least this one frame, so that a rig that
         drives it comes to a hold before it may be found somewhere else.
         """
-        self.frame = frame
-        if self._repeats(frame):
+        is_newer = self.frame is None or frame.captured_at > self.frame.captured_at
+        if self._repeats(frame) or not is_newer:
             return
-        expected = self._expect(frame)
-        self.observation = self._tracker.update(frame, expected)
+        self.frame = frame
+        self.observation = self._tracker.update(frame, self._expect(frame))
         measurement = self.observation.measurement
-        if measurement is not None:
-            self._take(measurement, expected)
+        if measurement is not None and measurement.pose.is_finite:
+            self._take(measurement)
         self._judge(frame)
 
     @property
@@ -74,16 +74,16 @@ class Perception:
 
     def _repeats(self, frame: Frame) -> bool:
         thumbnail = frame.image[::THUMBNAIL, ::THUMBNAIL].tobytes()
-        self.identical_frames = self.identical_frames + 1 if thumbnail == self._thumbnail else 0
+        self.identical_frames = self.identical_frames + 1 if thumbnail == self._thumbnail else 1
         self._thumbnail = thumbnail
-        return self.identical_frames >= FROZEN_FRAMES - 1
+        return self.identical_frames > 1
 
     def _expect(self, frame: Frame) -> Expectation | None:
         self.estimator.half_play = self.backlash.half_width
         return self.estimator.expect(frame.captured_at)
 
-    def _take(self, measurement: Measurement, expected: Expectation | None) -> None:
-        if expected is None:
+    def _take(self, measurement: Measurement) -> None:
+        if not self.estimator.known:
             self.estimator.start(measurement)
         elif self.estimator.correct(measurement):
             self._observe_backlash(measurement)

@@ -48,10 +48,16 @@ class Registry(Mapping[str, type[E]], Generic[E]):
 
     def register(self, entry: type) -> type:
         """Class decorator: make the class known under its `name`, which must be free."""
+        if not (isinstance(getattr(entry, "name", None), str) and entry.name):
+            raise ValueError(f"the {self.kind} {entry.__name__} needs a name: a class attribute, a text")
         if entry.name in self._entries:
             raise ValueError(f"a {self.kind} called {entry.name!r} is registered already")
         self._entries[entry.name] = entry
         return entry
+
+    def forget(self, name: str) -> None:
+        """Take a class out again."""
+        del self._entries[name]
 
     def build(self, name: str, parameters: Mapping[str, Any]) -> E:
         """An instance from raw parameters; raises `UnknownName` or pydantic's `ValidationError`."""

@@ -10,6 +10,7 @@ import math
 from dataclasses import dataclass
 from enum import IntEnum, StrEnum
 
+from control.gait import Gait
 from control.model import Pose, Tracking
 from control.snapshot import RigState
 
@@ -18,7 +19,7 @@ FRAME_STALE = 0.100
 FRAME_TOO_LATE = 0.150
 """A frame that was captured longer ago than this must not steer the robot, s."""
 FROZEN_FRAMES = 3
-"""This many identical pictures in a row are a frozen camera: sensor noise never repeats (faults.md)."""
+"""This many identical pictures in a row, the first included, are a frozen camera: noise never repeats."""
 PREDICT_FOR = 0.150
 """How long the robot may be steered by prediction alone, s (faults.md)."""
 TELEMETRY_STALE = 0.300
@@ -31,6 +32,9 @@ CURRENT_MISMATCH = 0.100
 NOT_DRIVING = 0.150
 """A board that should drive and does not for this long has expired or refused, s (five telemetry messages
 at the loop's pace, and the serial line's way there and back)."""
+
+SUPPLY_LOW = "supply_low"
+"""What the board calls a supply that is off; unlike its other faults it mends without a reset."""
 
 
 class Refused(Exception):
@@ -114,11 +118,28 @@ class Finding:
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """currents: A per coil.  soft, hard: half sizes of the squares that the centre should and must keep, m."""
+    """currents: A per coil.  field: T.  rate: rad/s.
+
+    soft, hard: half sizes of the squares that the centre should and must keep, m.
+    """
 
     currents: tuple[float, float, float] = (8.0, 8.0, 8.0)
+    field: float = 0.015
+    rate: float = math.radians(360.0)
     soft: float = 0.062
     hard: float = 0.068
+
+
+def check_gait(gait: Gait, limits: Limits) -> None:
+    """Refuse a gait that the rig file's limits do not allow."""
+    for name, value, limit, unit in (
+        ("fastest swing", math.degrees(gait.max_rate), math.degrees(limits.rate), "degrees/s"),
+        ("field", gait.field * 1e3, limits.field * 1e3, "mT"),
+    ):
+        if not 0.0 <= value <= limit * (1.0 + 1e-9):
+            raise Refused(
+                f"the {name} of {value:g} {unit} is beyond this rig's {limit:g} {unit}; choose less"
+            )
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,6 +148,7 @@ class Health:
 
     tick_gap: since the last tick.  frame_age: since the newest frame arrived.  frame_delay: from its
     capture to now.  link_ready: greeted and configured.  link_reason: why it is not.
+    link_incident: how the conversation with the board broke since the arm edge, "" if it did not.
     not_driving: how long the board has not been driving although it should.
     current_mismatch: how long sensed and commanded currents have disagreed.
     """
@@ -140,6 +162,7 @@ class Health:
     pose: Pose | None
     link_ready: bool
     link_reason: str
+    link_incident: str
     telemetry_age: float
     board_faults: tuple[str, ...]
     board_state: str
@@ -161,8 +184,9 @@ def _camera(health: Health) -> list[Finding]:
     if health.identical_frames >= FROZEN_FRAMES:
         message = f"the camera repeats one picture ({health.identical_frames} times)"
         return [Finding(Severity.HOLD, "frozen", message)]
-    if not health.frame_delay <= FRAME_TOO_LATE:
-        message = f"frames are {health.frame_delay * 1e3:.0f} ms old, {FRAME_TOO_LATE * 1e3:.0f} ms allowed"
+    if not 0.0 <= health.frame_delay <= FRAME_TOO_LATE:
+        allowed = f"0 to {FRAME_TOO_LATE * 1e3:.0f} ms are allowed"
+        message = f"frames are {health.frame_delay * 1e3:.0f} ms old, {allowed}"
         return [Finding(Severity.HOLD, "late", message)]
     return []
 
@@ -182,10 +206,14 @@ def _robot(health: Health, limits: Limits) -> list[Finding]:
 
 
 def _board(health: Health) -> list[Finding]:
+    if health.link_incident:
+        return [Finding(Severity.LATCH, "board-reset", health.link_incident)]
     if not health.link_ready:
         return [Finding(Severity.DISARM, "link", health.link_reason)]
     if not health.telemetry_age <= TELEMETRY_STALE:
         return [Finding(Severity.DISARM, "telemetry", f"no word from the board {_for(health.telemetry_age)}")]
+    if health.board_faults == (SUPPLY_LOW,):
+        return [Finding(Severity.DISARM, "supply", "the supply of the coils is low or off; switch it on")]
     if health.board_faults:
         return [Finding(Severity.LATCH, "board", f"the board reports: {', '.join(health.board_faults)}")]
     if not health.not_driving <= NOT_DRIVING:

@@ -2,29 +2,38 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from control.field_model import FieldModel
 from control.gait import Gait
+from control.gait_model import GaitModel
 from control.metrics import Metrics, MetricsTally
 from control.model import Pivot, Pose
 from control.perception import Perception
 from control.runs import RunRequest, Selection
 from control.snapshot import RunProgress
+from control.trajectories import Trajectory
+from control.trajectories.reference import Reference
 from control.walker import Moment, Stride, Walker
 
 
 class Walk:
     """The reference clock stands still while the rig is held and while the field comes up."""
 
-    def __init__(self, id: str, request: RunRequest, length: float, pivot: Pivot, heading: float) -> None:
-        """length: distance between the pivots, m.  pivot, heading: what the robot stands on and its heading."""
+    def __init__(self, id: str, request: RunRequest, length: float, pivot: Pivot, pose: Pose) -> None:
+        """length: distance between the pivots, m.  pivot: what the robot stands on."""
         selection = request.selection
         self.id = id
         self.request = request
         self.trajectory = selection.build_trajectory()
-        self.walker = Walker(selection.build_controller(), selection.gait, length, pivot, heading)
-        self.elapsed = 0.0
-        self.reference_time = 0.0
+        self.walker = Walker(selection.build_controller(), selection.gait, length, pivot, pose.heading)
+        self.workspace: float | None = None
+        self.gait_model: GaitModel | None = None
+        self.elapsed = self._began = 0.0
         self.tally = MetricsTally(length)
+        self._length = length
+        self._pose = pose
+        self._reference = self._reference_on(self.trajectory, selection.gait)
 
     @property
     def gait(self) -> Gait:
@@ -33,29 +42,35 @@ class Walk:
     @property
     def reference(self) -> tuple[float, float]:
         """The desired point now, m."""
-        return self.trajectory.point(self.reference_time)
+        return self._reference.point
 
     @property
     def passes_done(self) -> float:
-        return self.reference_time / self.trajectory.duration
+        return self._reference.passes_done
 
     @property
     def is_over(self) -> bool:
         cap = self.request.duration
-        return self.passes_done >= self.request.passes or (cap is not None and self.elapsed >= cap)
+        if self.walker.is_finished or (cap is not None and self.elapsed >= cap):
+            return True
+        return self._reference.is_over
 
     @property
     def duration(self) -> float:
         """How long the run will have taken, s."""
-        whole = self.request.passes * self.trajectory.duration / self.gait.reference_speed
+        whole = self._began + self._reference.duration
         return whole if self.request.duration is None else min(whole, self.request.duration)
 
     def change(self, selection: Selection) -> None:
         """Go on with another choice; a new path starts at its beginning."""
         if selection.trajectory != self.request.selection.trajectory:
             self.trajectory = selection.build_trajectory()
-            self.reference_time = 0.0
+            self._reference = self._reference_on(self.trajectory, selection.gait)
+            self._began = self.elapsed
+        else:
+            self._reference.change(selection.gait)
         self.walker.change(selection.build_controller(), selection.gait)
+        self.request = replace(self.request, selection=selection)
 
     def step(
         self, now: float, elapsed: float, pose: Pose, field: FieldModel, perception: Perception
@@ -64,19 +79,27 @@ class Walk:
         if not field.is_ready:
             return Stride(self.walker.sweep.pivot, 0.0, field.heading)
         self.elapsed += elapsed
-        self.reference_time += elapsed * self.gait.reference_speed
+        self._pose = pose
+        self._reference.advance_to(self.elapsed - self._began, pose)
         reference = self.reference
-        self.tally.add(pose, pose.distance_to(*reference))
+        if not self._reference.is_approaching:
+            self.tally.add(pose, pose.distance_to(*reference))
         moment = Moment(
             now=now,
             pose=pose,
             reference=reference,
-            reference_time=self.reference_time,
-            trajectory=self.trajectory,
+            reference_time=self._reference.time,
+            trajectory=self._reference.trajectory,
             field_settled=field.is_settled,
             lead=perception.backlash.lead,
+            workspace=self.workspace,
+            slip=self.gait_model or GaitModel(self._length, switch_time=field.ramp),
         )
         return self.walker.step(moment)
+
+    def _reference_on(self, trajectory: Trajectory, gait: Gait) -> Reference:
+        start = (self._pose.x, self._pose.y) if gait.approach else None
+        return Reference(trajectory, gait, self.request.passes, start)
 
     def metrics(self) -> Metrics:
         return self.tally.metrics(self.walker.sweep.counts, self.elapsed)

@@ -13,8 +13,9 @@ from dataclasses import dataclass
 
 from control.controllers.controller import Controller, Decision, Situation
 from control.gait import Gait, Sweep
-from control.model import Pivot, Pose
-from control.trajectories.trajectory import Trajectory
+from control.gait_model import GaitModel
+from control.model import TURN, Pivot, Pose
+from control.trajectories.trajectory import Path
 
 COMPLETE_WITHIN = math.radians(0.3)
 """A sweep is complete when the estimate is this close to its end: the noise of one camera measurement."""
@@ -30,15 +31,20 @@ class ControllerFault(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Moment:
-    """now: s.  field_settled: the field stands still on its goal.  lead: of the field, by direction, rad."""
+    """now: s.  field_settled: the field stands still on its goal.  lead: of the field, by direction, rad.
+
+    workspace, slip: as in `Situation`.
+    """
 
     now: float
     pose: Pose
     reference: tuple[float, float]
     reference_time: float
-    trajectory: Trajectory
+    trajectory: Path
     field_settled: bool
     lead: Callable[[float], float]
+    workspace: float | None = None
+    slip: GaitModel | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,6 +66,7 @@ class Walker:
         self.gait = gait
         self.sweep = Sweep(gait.sweep, pivot, heading)
         self.stuck = 0
+        self.is_finished = False
         self._length = length
         self._may_switch = True
         self._direction = 1.0
@@ -84,9 +91,11 @@ class Walker:
             self.sweep.complete(moment.pose.heading)
             self._begin_sweep()
         decision = self._decide(moment)
+        self.is_finished = decision.finished
         if self._may_switch:
             self.sweep.choose(decision.pivot)
-            self._may_switch = False
+            self._may_switch = decision.rate == 0.0
+        self.sweep.angle = self.gait.sweep if decision.sweep is None else decision.sweep
         rate = max(-self.gait.max_rate, min(self.gait.max_rate, decision.rate))
         self.sweep.turning(rate)
         self._direction = math.copysign(1.0, rate) if rate else self._direction
@@ -131,6 +140,8 @@ class Walker:
             reference_time=moment.reference_time,
             gait=self.gait,
             length=self._length,
+            workspace=moment.workspace,
+            slip=moment.slip,
         )
         try:
             decision = self.controller.step(situation)
@@ -140,6 +151,7 @@ class Walker:
             not isinstance(decision, Decision)
             or decision.pivot not in (1, -1)
             or not _is_finite(decision.rate)
+            or not _is_sweep(decision.sweep)
         ):
             raise ControllerFault(f"controller {self.controller.name!r} returned {decision!r}")
         return decision
@@ -147,3 +159,7 @@ class Walker:
 
 def _is_finite(rate: object) -> bool:
     return isinstance(rate, int | float) and math.isfinite(rate)
+
+
+def _is_sweep(sweep: object) -> bool:
+    return sweep is None or (isinstance(sweep, int | float) and 0.0 < sweep <= TURN)

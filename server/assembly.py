@@ -245,6 +245,8 @@ def _limits(settings: RigFile) -> Limits:
     half = 0.5 * limits.workspace_mm
     return Limits(
         currents=_triple(limits.current_A),
+        field=limits.field_mT * 1e-3,
+        rate=math.radians(limits.rate_deg_s),
         soft=(half + limits.soft_margin_mm) * MM,
         hard=(half + limits.hard_margin_mm) * MM,
     )

@@ -15,18 +15,30 @@ from typing import Annotated, Any
 
 import typer
 from pydantic import ValidationError
-from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
+from control import plugins
 from control.registry import UnknownName
 from control.runs import Choice, RunRequest, Selection
 from control.safety import Refused
 from control.snapshot import Snapshot
 from control.trajectories import OutsideWorkspace
+from control.trajectories.waypoint_file import WaypointFileError
+from server.commands import calibrate
+from server.commands.outcome import (
+    FAILED,
+    REFUSED,
+    USAGE,
+    RigOption,
+    console,
+    fail,
+    read_rig_file,
+    warn,
+    with_simulation,
+)
 from server.environment import check_environment
-from server.settings import RigFile, RigFileError, in_words, load_rig_file
-
-FAILED, USAGE, REFUSED = 1, 2, 3
+from server.settings import RigFile, in_words
+from server.waypoint_import import with_points
 
 app = typer.Typer(
     add_completion=False,
@@ -34,22 +46,35 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     help="See, control and record a magnetic pivot walker, on the rig or in simulation.",
 )
-console = Console(stderr=True)
+
+
+app.add_typer(calibrate.app, name="calibrate")
 
 
 def main() -> None:
     """The console script."""
-    app()
+    try:
+        app()
+    except KeyboardInterrupt:
+        console.print("pivotrig: interrupted", style="red")
+        sys.exit(FAILED)
 
 
-def fail(message: str, status: int) -> typer.Exit:
-    console.print(f"pivotrig: {message}", style="red", markup=False, highlight=False, soft_wrap=True)
-    return typer.Exit(status)
-
-
-RigOption = Annotated[
-    Path | None, typer.Option("--rig", help="Rig file (TOML); default: the paper's rig, simulated.")
+PluginOption = Annotated[
+    list[Path] | None,
+    typer.Option("--plugin", help="Python file with a controller or trajectory; may be given again."),
 ]
+
+
+def load_plugins(files: list[Path] | None) -> None:
+    """Installed plug-ins that are broken are left out with a word; a broken one that was asked for ends the command."""
+    for problem in plugins.load_installed():
+        warn(str(problem))
+    for file in files or []:
+        try:
+            plugins.load_file(file)
+        except plugins.PluginError as error:
+            raise fail(str(error), USAGE) from error
 
 
 @app.command()
@@ -58,6 +83,7 @@ def serve(
         bool, typer.Option("--sim", help="Simulate camera and board, whatever the rig file says.")
     ] = False,
     rig: RigOption = None,
+    plugin: PluginOption = None,
     host: Annotated[
         str, typer.Option(help="Address to listen on; loopback only in this version.")
     ] = "127.0.0.1",
@@ -69,7 +95,8 @@ def serve(
 ) -> None:
     """Open the rig and serve its dashboard."""
     check_environment()
-    settings = _rig_file(rig)
+    load_plugins(plugin)
+    settings = read_rig_file(rig)
     from server.serving import ServeError, serve_rig
 
     try:
@@ -94,19 +121,18 @@ def run(
     duration: Annotated[float | None, typer.Option(help="End after this time, s.")] = None,
     seed: Annotated[int | None, typer.Option(help="Seed of the simulation.")] = None,
     rig: RigOption = None,
+    plugin: PluginOption = None,
     as_json: Annotated[bool, typer.Option("--json", help="One JSON object on stdout.")] = False,
 ) -> None:
     """Walk one path and print how well that went."""
     check_environment()
-    changes = {"plant": plant, "seed": seed}
-    rig_file = _simulation(
-        _rig_file(rig), {name: value for name, value in changes.items() if value is not None}
-    )
+    load_plugins(plugin)
+    rig_file = with_simulation(read_rig_file(rig), {"plant": plant, "seed": seed})
     choices = _parameters(settings or [])
     gait = {"sweep_deg": sweep, "tilt_deg": tilt, "path_step_s": path_step, **choices["gait"]}
     request = _request(
         Choice(controller, choices["controller"]),
-        Choice(trajectory, choices["trajectory"]),
+        Choice(trajectory, _points_read(trajectory, choices["trajectory"])),
         gait,
         passes,
         duration,
@@ -129,6 +155,8 @@ def _run(rig_file: RigFile, request: RunRequest, as_json: bool) -> None:
             done = run_headless(machine, id, request, lambda snapshot: _show(progress, task, snapshot))
     except (Refused, LinkError, CameraError) as error:
         raise fail(str(error), REFUSED) from error
+    except OSError as error:
+        raise fail(f"the rig cannot be opened: {error}", REFUSED) from error
     except (OutsideWorkspace, ValueError) as error:
         raise fail(str(error), USAGE) from error
     result: dict[str, Any] = {
@@ -144,25 +172,6 @@ def _run(rig_file: RigFile, request: RunRequest, as_json: bool) -> None:
         _table(result)
 
 
-def _rig_file(path: Path | None) -> RigFile:
-    if path is None:
-        return RigFile()
-    try:
-        return load_rig_file(path)
-    except RigFileError as error:
-        raise fail(str(error), USAGE) from error
-
-
-def _simulation(rig_file: RigFile, changes: Mapping[str, Any]) -> RigFile:
-    if changes and not rig_file.is_simulated:
-        given = " and ".join(f"--{name}" for name in changes)
-        raise fail(f"{given} belong to the simulated rig, but this rig file has a real camera", USAGE)
-    try:
-        return rig_file.with_simulation(**changes)
-    except ValidationError as error:
-        raise fail(f"the simulation cannot be set up:\n{in_words(error)}", USAGE) from error
-
-
 def _parameters(settings: list[str]) -> dict[str, dict[str, Any]]:
     """`controller.gain=2.5` and its kin, sorted by what they belong to."""
     sorted_: dict[str, dict[str, Any]] = {"controller": {}, "trajectory": {}, "gait": {}}
@@ -174,6 +183,13 @@ def _parameters(settings: list[str]) -> dict[str, dict[str, Any]]:
             raise fail(f"--set {setting!r} is not understood; allowed: {owners}", USAGE)
         sorted_[owner][field.strip()] = _value(value.strip())
     return sorted_
+
+
+def _points_read(trajectory: str, parameters: dict[str, Any]) -> dict[str, Any]:
+    try:
+        return with_points(trajectory, parameters)
+    except WaypointFileError as error:
+        raise fail(str(error), USAGE) from error
 
 
 def _value(text: str) -> Any:

@@ -30,6 +30,7 @@ from control.snapshot import RigState, Snapshot
 from control.trajectories import check_inside
 from control.trajectories.custom import TooManyPaths, save_path
 from control.trajectories.trajectory import points_of
+from control.trajectories.waypoints import Smoothing
 from server.api.choices import selection_json
 from server.api.runs import run_json
 from server.assembly import Machine
@@ -43,6 +44,8 @@ log = logging.getLogger(__name__)
 
 FRAME_TIMEOUT = 0.05
 """A tick happens at least this often, frame or not, s: half the age at which a camera counts as dead."""
+ESTOP_ANSWER = 0.5
+"""An emergency stop is answered after this long at the latest, s; the coils have been stopped at once."""
 RUNS_KEPT = 1000
 EVENTS_KEPT = 1000
 TRAIL_POINTS = 600
@@ -66,6 +69,7 @@ class Rig:
         self.selection = Selection()
         self.runs: deque[Run] = deque(maxlen=RUNS_KEPT)
         self.events: deque[Announcement] = deque(maxlen=EVENTS_KEPT)
+        self._news: deque[tuple[str, Run]] = deque(maxlen=EVENTS_KEPT)
         self.updates: Publisher[Snapshot] = Publisher()
         self.announcements: Publisher[dict[str, Any]] = announcer()
         self.custom_trajectories = CustomTrajectories()
@@ -157,6 +161,8 @@ class Rig:
         for announcement in self._loop.take_announcements():
             self.events.append(announcement)
             self.announcements.publish(_event_message(announcement))
+        while self._news:
+            self._announce_run(*self._news.popleft())
         for ended in self._loop.take_ended():
             self._record_end(ended)
 
@@ -174,7 +180,9 @@ class Rig:
     # Requests ------------------------------------------------------------------------------------
 
     async def _ask(self, request: Callable[[], T]) -> T:
-        """Carry a request out between two ticks and publish what became of it."""
+        """Carry a request out between two ticks and publish what became of it; raises `Refused`."""
+        if self.failure is not None:
+            raise Refused(self.snapshot.reason)
         answer = await self._on_thread(request)
         self.snapshot = await self._on_thread(self._look_again)
         self._tell()
@@ -198,28 +206,40 @@ class Rig:
         await self._ask(self._loop.disarm)
 
     async def estop(self) -> None:
-        """Zero at once, then latch; always succeeds."""
+        """Zero at once, then latch; always succeeds, and soon, even where the loop hangs."""
         self._loop.estop()
-        await self._ask(self._loop.latch_estop)
+        with contextlib.suppress(TimeoutError, Refused):
+            await asyncio.wait_for(asyncio.shield(self._ask(self._loop.latch_estop)), ESTOP_ANSWER)
 
     async def reset(self) -> None:
         await self._ask(self._loop.reset)
 
     async def start_run(self, request: RunRequest) -> Run:
         run = Run(new_id(), request, RunState.RUNNING, datetime.now(UTC))
-        await self._on_thread(lambda: self._loop.start(run.id, request))
-        self._trail.clear()
-        self.runs.appendleft(run)
-        self._announce_run("started", run)
-        await self._ask(lambda: None)
+        await self._ask(lambda: self._start(run))
         return self._run_of(run.id)
 
-    async def change_run(self, selection: Selection) -> Run:
-        await self._ask(lambda: self._loop.change(selection))
+    def _start(self, run: Run) -> None:
+        """On the rig's thread: the run is listed from the instant at which it may also end."""
+        self._loop.start(run.id, run.request)
+        self._trail.clear()
+        self.runs.appendleft(run)
+        self._news.append(("started", run))
+
+    async def change_run(self, change: Callable[[Selection], Selection]) -> Run:
+        """`change` makes the new selection of the old one, so that two changes at once both count."""
+        id = await self._ask(lambda: self._change(change))
+        return self._run_of(id)
+
+    def _change(self, change: Callable[[Selection], Selection]) -> str:
+        if self.snapshot.run is None or not self.runs or self.runs[0].state is not RunState.RUNNING:
+            raise Refused("there is no run to change; arm the rig and start one")
         run = self.runs[0]
+        selection = change(run.request.selection)
+        self._loop.change(selection)
         self.runs[0] = replace(run, request=replace(run.request, selection=selection))
-        self._announce_run("changed", self.runs[0])
-        return self.runs[0]
+        self._news.append(("changed", self.runs[0]))
+        return run.id
 
     async def stop_run(self) -> None:
         await self._ask(self._loop.stop_run)
@@ -249,10 +269,12 @@ class Rig:
 class CustomTrajectories:
     """Paths that somebody drew or sent, by name; kept for this session."""
 
-    def save(self, name: str, points: NDArray[np.float64], closed: bool, speed: float) -> None:
+    def save(
+        self, name: str, points: NDArray[np.float64], closed: bool, speed: float, kind: Smoothing
+    ) -> None:
         """Keep a path ((n, 2) points, m; m/s) under a free name; raises `Refused` when there are too many."""
         try:
-            save_path(name, points, closed, speed)
+            save_path(name, points, closed, speed, kind)
         except TooManyPaths as error:
             raise Refused(str(error)) from error
 

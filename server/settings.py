@@ -17,7 +17,8 @@ MS = 1e-3
 
 Positive = Annotated[float, Field(gt=0.0)]
 Sigma = Annotated[float, Field(gt=0.0, le=1000.0)]
-PerCoil = Annotated[list[Positive], Field(min_length=3, max_length=3)]
+PerCoil = Annotated[list[Annotated[float, Field(gt=0.0, le=30.0)]], Field(min_length=3, max_length=3)]
+"""A VNH5019 carries 30 A for a moment and 12 A for long."""
 
 
 class RigFileError(ValueError):
@@ -96,8 +97,8 @@ class CameraSection(Section):
 class LinkSection(Section):
     port: str = "sim://"
     baud: Annotated[int, Field(ge=9600, le=2_000_000)] = 500_000
-    dead_man_ms: Annotated[int, Field(ge=20, le=1000)] = 200
-    time_to_live_ms: Annotated[int, Field(ge=20, le=1000)] = 150
+    dead_man_ms: Annotated[int, Field(ge=20, le=500)] = 200
+    time_to_live_ms: Annotated[int, Field(ge=20, le=500)] = 150
     """Of one drive command: nine frames at 60 Hz."""
     ramp_ms: Annotated[int, Field(ge=1, le=1000)] = 50
     """Elevation ramp at a pivot switch; the heading is held meanwhile."""
@@ -145,7 +146,8 @@ class SimulationSection(Section):
     seed: Annotated[int, Field(ge=0, le=2**31 - 1)] = 1
     board: str = Field(default="twin", pattern=r"^(twin|tcp://\S+)$")
     """twin: the board's twin in this process; tcp://HOST:PORT: another board behind its lock-step port."""
-    latency_ms: Annotated[float, Field(ge=0.0, le=1000.0)] = 35.0
+    latency_ms: Annotated[float, Field(ge=0.0, le=120.0)] = 35.0
+    """The rig holds when frames get older than 150 ms."""
     noise: Annotated[float, Field(ge=0.0, le=50.0)] = 3.0
     """Grey levels."""
     blur_px: Annotated[float, Field(ge=0.0, le=10.0)] = 0.7

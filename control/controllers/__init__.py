@@ -2,5 +2,23 @@
 
 from control.controllers.controller import Controller, Decision, Situation, controllers
 from control.controllers.geometric import Geometric
+from control.controllers.gradient import Gradient
+from control.controllers.heading_hold import Hold
+from control.controllers.planner import Planner
+from control.controllers.sequence import Sequence
+from control.controllers.star import Star
+from control.controllers.straight import Straight
 
-__all__ = ["Controller", "Decision", "Geometric", "Situation", "controllers"]
+__all__ = [
+    "Controller",
+    "Decision",
+    "Geometric",
+    "Gradient",
+    "Hold",
+    "Planner",
+    "Sequence",
+    "Situation",
+    "Star",
+    "Straight",
+    "controllers",
+]

@@ -68,9 +68,10 @@ class CoilDrive:
         for regulator in self._regulators:
             regulator.rest()
 
-    def coast(self, counts: messages.Triple) -> None:
+    def coast(self, counts: messages.Triple, supply: int) -> None:
         """One millisecond without drive: the observers follow the currents that decay."""
         self._counts = counts
+        self.supply_low = supply < (self._nominal * 3) >> 2
         for regulator, count in zip(self._regulators, counts, strict=True):
             regulator.observe(count)
 

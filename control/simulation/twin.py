@@ -200,7 +200,7 @@ class FirmwareTwin:
             self.motion.advance()
             self.coils.advance(self.motion, counts, supply)
         else:
-            self.coils.coast(counts)
+            self.coils.coast(counts, supply)
         if self._greeted:
             self._until_telemetry -= 1
             if self._until_telemetry <= 0:

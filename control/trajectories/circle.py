@@ -3,28 +3,19 @@
 from __future__ import annotations
 
 import math
-from typing import Literal
-
-from pydantic import Field
 
 from control.model import TURN
 from control.registry import Parameters
+from control.trajectories.fields import SMALLEST_MM, Direction, direction, millimetres, speed
 from control.trajectories.trajectory import MM, trajectories
 
 
 class CircleParameters(Parameters):
-    radius_mm: float = Field(default=35.0, gt=0.0, le=500.0, title="Radius", json_schema_extra={"unit": "mm"})
-    centre_x_mm: float = Field(
-        default=0.0, ge=-500.0, le=500.0, title="Centre x", json_schema_extra={"unit": "mm"}
-    )
-    centre_y_mm: float = Field(
-        default=0.0, ge=-500.0, le=500.0, title="Centre y", json_schema_extra={"unit": "mm"}
-    )
-    speed_mm_s: float = Field(
-        default=3.0, gt=0.0, le=50.0, title="Speed", description="Along the path, at a path step of 0.1 s.",
-        json_schema_extra={"unit": "mm/s"},
-    )  # fmt: skip
-    direction: Literal["clockwise", "anticlockwise"] = Field(default="clockwise", title="Direction")
+    radius_mm: float = millimetres(35.0, "Radius", least=SMALLEST_MM)
+    centre_x_mm: float = millimetres(0.0, "Centre x")
+    centre_y_mm: float = millimetres(0.0, "Centre y")
+    speed_mm_s: float = speed()
+    direction: Direction = direction()
 
 
 @trajectories.register

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field
 
 from control.registry import Parameters
+from control.trajectories.fields import speed as speed_field
 from control.trajectories.trajectory import MM, trajectories
-from control.trajectories.waypoints import Waypoints, WaypointsParameters
+from control.trajectories.waypoints import Smoothing, Waypoints, WaypointsParameters
 
 MOST_PATHS = 200
 """Saved paths that one session may hold."""
@@ -18,15 +18,17 @@ class TooManyPaths(ValueError):
     """The session holds as many saved paths as it may."""
 
 
-def save_path(name: str, points: NDArray[np.float64], closed: bool, speed: float) -> None:
-    """Register straight pieces through `points` ((n, 2), m) walked at `speed` (m/s) as a trajectory `name`.
+def save_path(
+    name: str, points: NDArray[np.float64], closed: bool, speed: float, kind: Smoothing = "polyline"
+) -> None:
+    """Register a path through `points` ((n, 2), m) walked at `speed` (m/s) as a trajectory `name`.
 
     Raises ValueError for a name that is taken, `TooManyPaths`, and pydantic's ValidationError for bad points.
     """
     if sum(issubclass(entry, SavedPath) for entry in trajectories.values()) >= MOST_PATHS:
         raise TooManyPaths(f"{MOST_PATHS} paths are saved already, which is the limit of a session")
     mm = [(float(x), float(y)) for x, y in np.asarray(points) / MM]
-    whole = WaypointsParameters(points_mm=mm, closed=closed, speed_mm_s=speed / MM)
+    whole = WaypointsParameters(points_mm=mm, closed=closed, kind=kind, speed_mm_s=speed / MM)
     trajectories.register(_entry(name, whole))
 
 
@@ -41,10 +43,7 @@ class SavedPath(Waypoints):
 
 def _entry(name: str, whole: WaypointsParameters) -> type[SavedPath]:
     class SpeedOnly(Parameters):
-        speed_mm_s: float = Field(
-            default=whole.speed_mm_s, gt=0.0, le=50.0, title="Speed",
-            description="Along the path, at a path step of 0.1 s.", json_schema_extra={"unit": "mm/s"},
-        )  # fmt: skip
+        speed_mm_s: float = speed_field(whole.speed_mm_s)
 
     summary = f"A saved path of {len(whole.points_mm)} points."
     body = {"name": name, "title": name, "summary": summary, "Parameters": SpeedOnly, "whole": whole}

@@ -8,6 +8,7 @@ from pydantic import Field
 
 from control.model import TURN
 from control.registry import Parameters
+from control.trajectories.fields import SMALLEST_MM, millimetres
 from control.trajectories.trajectory import MM, trajectories
 
 PAPER_PERIOD = 40.0 * math.pi
@@ -15,14 +16,8 @@ PAPER_PERIOD = 40.0 * math.pi
 
 
 class EightParameters(Parameters):
-    width_mm: float = Field(
-        default=80.0, gt=0.0, le=500.0, title="Width", description="Extent along x.",
-        json_schema_extra={"unit": "mm"},
-    )  # fmt: skip
-    height_mm: float = Field(
-        default=80.0, gt=0.0, le=500.0, title="Height", description="Extent along y.",
-        json_schema_extra={"unit": "mm"},
-    )  # fmt: skip
+    width_mm: float = millimetres(80.0, "Width", "Extent along x.", least=SMALLEST_MM)
+    height_mm: float = millimetres(80.0, "Height", "Extent along y.", least=SMALLEST_MM)
     period_s: float = Field(
         default=round(PAPER_PERIOD, 6), ge=1.0, le=36000.0, title="Period",
         description="Time for one full eight at a path step of 0.1 s.", json_schema_extra={"unit": "s"},

@@ -4,32 +4,26 @@ from __future__ import annotations
 
 import math
 
-from pydantic import Field, model_validator
+from pydantic import model_validator
 
 from control.registry import Parameters
+from control.trajectories.fields import SMALLEST_MM, millimetres, speed
 from control.trajectories.trajectory import MM, passed, trajectories
 
 
 class LineParameters(Parameters):
-    start_x_mm: float = Field(
-        default=0.0, ge=-500.0, le=500.0, title="Start x", json_schema_extra={"unit": "mm"}
-    )
-    start_y_mm: float = Field(
-        default=-40.0, ge=-500.0, le=500.0, title="Start y", json_schema_extra={"unit": "mm"}
-    )
-    end_x_mm: float = Field(default=0.0, ge=-500.0, le=500.0, title="End x", json_schema_extra={"unit": "mm"})
-    end_y_mm: float = Field(
-        default=40.0, ge=-500.0, le=500.0, title="End y", json_schema_extra={"unit": "mm"}
-    )
-    speed_mm_s: float = Field(
-        default=3.0, gt=0.0, le=50.0, title="Speed", description="Along the path, at a path step of 0.1 s.",
-        json_schema_extra={"unit": "mm/s"},
-    )  # fmt: skip
+    start_x_mm: float = millimetres(0.0, "Start x")
+    start_y_mm: float = millimetres(-40.0, "Start y")
+    end_x_mm: float = millimetres(0.0, "End x")
+    end_y_mm: float = millimetres(40.0, "End y")
+    speed_mm_s: float = speed()
 
     @model_validator(mode="after")
     def _has_a_length(self) -> LineParameters:
-        if (self.start_x_mm, self.start_y_mm) == (self.end_x_mm, self.end_y_mm):
-            raise ValueError("the line starts where it ends; move one of its ends")
+        if not math.hypot(self.end_x_mm - self.start_x_mm, self.end_y_mm - self.start_y_mm) >= SMALLEST_MM:
+            raise ValueError(
+                f"the line must be at least {SMALLEST_MM:g} mm long, but its ends are the same; move one of them"
+            )
         return self
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any, Protocol
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,24 +13,39 @@ from control.registry import Parameters, Registry
 MM = 1e-3
 
 
-class Trajectory(Protocol):
-    """One pass takes `duration` seconds of the reference clock; `point` accepts any time >= 0.
+class Path(Protocol):
+    """A path with a clock of its own: one pass takes `duration` seconds; `point` accepts any time >= 0.
 
     A closed path goes round again after a pass, an open one stays at its end.
     """
+
+    @property
+    def duration(self) -> float: ...
+
+    @property
+    def closed(self) -> bool: ...
+
+    def point(self, time: float) -> tuple[float, float]:
+        """The desired point at `time` (s) of the path's clock, m."""
+        ...
+
+
+@runtime_checkable
+class Cornered(Protocol):
+    """A path that goes through certain points, which even the finest sampling could miss; (n, 2) m."""
+
+    corners: NDArray[np.float64]
+
+
+class Trajectory(Path, Protocol):
+    """A path that can be chosen by name."""
 
     name: str
     title: str
     summary: str
     Parameters: type[Parameters]
-    duration: float
-    closed: bool
 
     def __init__(self, parameters: Any) -> None: ...
-
-    def point(self, time: float) -> tuple[float, float]:
-        """The desired point at reference time `time` (s), m."""
-        ...
 
 
 trajectories: Registry[Trajectory] = Registry("trajectory")
@@ -40,23 +55,25 @@ class OutsideWorkspace(ValueError):
     """A path that the robot's centre must not follow."""
 
 
-def points_of(trajectory: Trajectory, count: int = 600) -> NDArray[np.float64]:
-    """One pass as (count, 2) points, m, evenly spaced in reference time, both ends included."""
-    times = np.linspace(0.0, trajectory.duration, count)
-    if trajectory.closed:
+def points_of(path: Path, count: int = 600) -> NDArray[np.float64]:
+    """One pass as (count, 2) points, m, evenly spaced in the path's time, both ends included."""
+    times = np.linspace(0.0, path.duration, count)
+    if path.closed:
         times[-1] = 0.0
-    return np.array([trajectory.point(t) for t in times])
+    return np.array([path.point(t) for t in times.tolist()])
 
 
-def length_of(trajectory: Trajectory) -> float:
+def length_of(path: Path) -> float:
     """Length of one pass, m."""
-    steps = np.diff(points_of(trajectory, 4000), axis=0)
+    steps = np.diff(points_of(path, 4000), axis=0)
     return float(np.hypot(steps[:, 0], steps[:, 1]).sum())
 
 
-def check_inside(trajectory: Trajectory, half_size: float) -> None:
+def check_inside(path: Path, half_size: float) -> None:
     """Refuse a path whose points leave the square workspace of half the size `half_size`, m."""
-    points = points_of(trajectory)
+    points = points_of(path, 2000)
+    if isinstance(path, Cornered):
+        points = np.vstack([points, path.corners])
     worst = points[np.abs(points).max(axis=1).argmax()]
     reach = float(np.abs(worst).max())
     if not reach <= half_size:

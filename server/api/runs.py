@@ -9,6 +9,7 @@ from pydantic import Field
 
 from control.metrics import Metrics
 from control.runs import Run, RunRequest, RunState
+from server.api import ticks
 from server.api.access import TheRig
 from server.api.body import StrictRoute
 from server.api.choices import change, selection_json
@@ -95,8 +96,8 @@ async def one(run_id: Annotated[str, Field(max_length=80)], rig: TheRig) -> dict
 @router.patch("/runs/current")
 async def alter(body: SelectionChange, rig: TheRig) -> dict[str, Any]:
     """Another controller, trajectory or gait, or other parameters of them, while the robot walks."""
-    running = current(list(rig.runs))
-    return run_json(await rig.change_run(change(running.request.selection, body)))
+    current(list(rig.runs))
+    return run_json(await rig.change_run(lambda selection: change(selection, body)))
 
 
 @router.post("/runs/current/stop")
@@ -115,9 +116,9 @@ async def pause(rig: TheRig) -> dict[str, Any]:
 
 @router.post("/runs/current/resume")
 async def resume(rig: TheRig) -> dict[str, Any]:
-    """Go on from where the run was held."""
+    """Go on from where the run was held; a rig that was held without a run is armed again (its state)."""
     await rig.resume_run()
-    return newest(rig)
+    return newest(rig) if rig.snapshot.run is not None else ticks.state(rig.snapshot)
 
 
 def newest(rig: TheRig) -> dict[str, Any]:

@@ -6,11 +6,13 @@ Every model is strict: unknown fields, NaN, infinity and numbers in quotes are r
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal, cast
 
 from pydantic import BaseModel, ConfigDict, Field, JsonValue, StringConstraints
 
-from control.gait import Gait
+from control.gait import Gait, TimeLaw
+from control.trajectories.fields import SLOWEST_MM_S
+from control.trajectories.waypoints import Smoothing
 
 MM = 1e-3
 MT = 1e-3
@@ -43,6 +45,9 @@ Duration = Annotated[
 ]
 
 
+TimeLawName = Literal["path_step", "constant_speed", "trapezoidal", "wait"]
+
+
 class Edge(BaseModel):
     model_config = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False, frozen=True)
 
@@ -58,7 +63,7 @@ class GaitSettings(Edge):
         30.0, ge=1.0, le=350.0, title="Sweep", description="Turn about one pivot before it may change."
     )
     tilt_deg: float = angle(
-        25.0, ge=0.0, lt=60.0, title="Tilt", description="Elevation of the field that presses the pivot down."
+        25.0, ge=5.0, le=45.0, title="Tilt", description="Elevation of the field that presses the pivot down."
     )
     field_mT: float = Field(
         default=10.0, gt=0.0, lt=15.0, title="Field", description="Strength of the field at the robot.",
@@ -73,6 +78,31 @@ class GaitSettings(Edge):
         description="Path time that passes every 0.1 s: 0.1 is the path's own speed, 0.2 twice that.",
         json_schema_extra={"unit": "s"},
     )  # fmt: skip
+    time_law: TimeLawName = Field(
+        default="path_step", title="Time law",
+        description=(
+            "How the reference moves: by the path step; at constant speed; from rest to rest; "
+            "or no farther than the robot follows."
+        ),
+    )  # fmt: skip
+    speed_mm_s: float = Field(
+        default=3.0, ge=SLOWEST_MM_S, le=50.0, title="Path speed",
+        description="Of the reference, by every time law but the path step.",
+        json_schema_extra={"unit": "mm/s"},
+    )  # fmt: skip
+    acceleration_mm_s2: float = Field(
+        default=2.0, ge=0.001, le=1000.0, title="Acceleration", description="Of the trapezoidal time law.",
+        json_schema_extra={"unit": "mm/s²"},
+    )  # fmt: skip
+    wait_mm: float = Field(
+        default=5.0, ge=0.5, le=50.0, title="Wait",
+        description="How far ahead of the robot the reference goes before it waits, by the time law wait.",
+        json_schema_extra={"unit": "mm"},
+    )  # fmt: skip
+    approach: bool = Field(
+        default=False, title="Approach",
+        description="Walk straight to the start of the path first; errors count from there.",
+    )  # fmt: skip
 
     def to_si(self) -> Gait:
         return Gait(
@@ -81,6 +111,11 @@ class GaitSettings(Edge):
             field=self.field_mT * MT,
             max_rate=math.radians(self.max_rate_deg_s),
             path_step=self.path_step_s,
+            time_law=TimeLaw(self.time_law),
+            speed=self.speed_mm_s * MM,
+            acceleration=self.acceleration_mm_s2 * MM,
+            wait_distance=self.wait_mm * MM,
+            approach=self.approach,
         )
 
     @classmethod
@@ -92,6 +127,11 @@ class GaitSettings(Edge):
             field_mT=rounded(gait.field / MT),
             max_rate_deg_s=rounded(math.degrees(gait.max_rate)),
             path_step_s=rounded(gait.path_step),
+            time_law=cast(TimeLawName, gait.time_law.value),
+            speed_mm_s=rounded(gait.speed / MM),
+            acceleration_mm_s2=rounded(gait.acceleration / MM),
+            wait_mm=rounded(gait.wait_distance / MM),
+            approach=gait.approach,
         )
 
 
@@ -129,6 +169,11 @@ class GaitChange(Edge):
     field_mT: float | None = None
     max_rate_deg_s: float | None = None
     path_step_s: float | None = None
+    time_law: TimeLawName | None = None
+    speed_mm_s: float | None = None
+    acceleration_mm_s2: float | None = None
+    wait_mm: float | None = None
+    approach: bool | None = None
 
 
 class SelectionChange(Edge):
@@ -154,9 +199,10 @@ class PreviewBody(ChoiceBody):
 
 
 class CustomPathBody(Edge):
-    """A path to save, as straight pieces through points."""
+    """A path to save: straight pieces or a smooth curve through points."""
 
     name: PathName
-    points_mm: Annotated[list[PointMM], Field(min_length=2, max_length=10_000)]
+    points_mm: Annotated[list[PointMM], Field(min_length=2, max_length=2_000)]
     closed: bool = True
-    speed_mm_s: Annotated[float, Field(gt=0.0, le=50.0)] = 3.0
+    kind: Smoothing = "polyline"
+    speed_mm_s: Annotated[float, Field(ge=SLOWEST_MM_S, le=50.0)] = 3.0

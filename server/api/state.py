@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from importlib.metadata import version
-from typing import Any
+from typing import Annotated, Any, Literal
 
-from fastapi import APIRouter
+from fastapi import APIRouter, Query
 
 from server.api import ticks
 from server.api.access import TheRig
 from server.api.body import StrictRoute
 
 router = APIRouter(tags=["state"], route_class=StrictRoute)
+
+Severity = Literal["info", "warn", "error"]
 
 VERSION = version("pivotrig")
 
@@ -34,8 +36,14 @@ async def rig_file(rig: TheRig) -> dict[str, Any]:
 
 
 @router.get("/events")
-async def events(rig: TheRig) -> dict[str, Any]:
-    """What happened in this session, newest first."""
+async def events(
+    rig: TheRig,
+    severity: Annotated[Severity | None, Query()] = None,
+    cursor: Annotated[int, Query(ge=0)] = 0,
+    limit: Annotated[int, Query(ge=1, le=500)] = 100,
+) -> dict[str, Any]:
+    """What happened in this session, newest first; `next` is the cursor of the following page, or null."""
+    wanted = [event for event in reversed(rig.events) if severity in (None, event.severity)]
     listed = [
         {
             "time_s": ticks.number(event.time),
@@ -43,6 +51,6 @@ async def events(rig: TheRig) -> dict[str, Any]:
             "code": event.code,
             "message": event.message,
         }
-        for event in reversed(rig.events)
+        for event in wanted[cursor : cursor + limit]
     ]
-    return {"events": listed, "next": None}
+    return {"events": listed, "next": cursor + limit if cursor + limit < len(wanted) else None}

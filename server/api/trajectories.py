@@ -50,7 +50,7 @@ async def save(body: CustomPathBody, rig: TheRig) -> dict[str, Any]:
     choice = checked(trajectories, ChoiceBody(name=Waypoints.name, parameters=settings))
     inside(trajectories.build(choice.name, choice.parameters), rig, ("points_mm",))
     points = np.array(body.points_mm) * MM
-    rig.custom_trajectories.save(body.name, points, body.closed, body.speed_mm_s * MM)
+    rig.custom_trajectories.save(body.name, points, body.closed, body.speed_mm_s * MM, body.kind)
     return {"name": body.name, **settings}
 
 

@@ -91,3 +91,10 @@ def test_a_saved_path_becomes_a_trajectory_with_a_speed_to_choose() -> None:
     assert bow.point(1e3) == pytest.approx((0.01, 0.02))
     with pytest.raises(ValueError, match="registered already"):
         save_path("test bow", np.array([(0.0, 0.0), (0.01, 0.0)]), closed=False, speed=0.002)
+
+
+def test_no_single_corner_slips_out_of_the_workspace() -> None:
+    points = [(30.0 * math.cos(i / 100), 30.0 * math.sin(i / 100)) for i in range(1999)]
+    points.insert(1000, (0.0, 60.5))
+    with pytest.raises(OutsideWorkspace, match=r"60\.5"):
+        check_inside(trajectories.build("waypoints", {"points_mm": points, "speed_mm_s": 50.0}), 0.06)

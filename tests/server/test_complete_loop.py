@@ -8,7 +8,7 @@ import pytest
 
 from control.controllers import Decision, Situation, controllers
 from control.gait import Gait
-from control.model import Pose, Tracking, wrap
+from control.model import Frame, Pose, Tracking, wrap
 from control.registry import Parameters
 from control.runs import Choice, RunRequest, RunState, Selection
 from control.safety import Refused
@@ -259,20 +259,73 @@ def test_a_pause_holds_and_the_reference_waits(bench: Bench) -> None:
 def test_a_board_that_is_unplugged_disarms_and_comes_back_disarmed(bench: Bench) -> None:
     bench.walk()
     bench.board.unplug()
-    bench.until(lambda snapshot: snapshot.rig is RigState.DISARMED, within=0.5)
+    bench.until(lambda snapshot: snapshot.rig is RigState.FAULT, within=0.5)
     assert bench.ended == [RunState.ABORTED]
     bench.board.plug()
+    bench.loop.reset()
     bench.until(lambda snapshot: snapshot.link.state == "ready", within=10.0)
     assert bench.run_for(0.5).rig is RigState.DISARMED
     assert bench.board.drive_is_zero
 
 
-def test_a_supply_that_is_off_disarms(bench: Bench) -> None:
+def test_a_supply_that_dips_disarms_and_the_rig_arms_again_once_it_is_back(bench: Bench) -> None:
     bench.walk()
-    bench.board.supply = 0.0
+    bench.board.supply = 12.0
     snapshot = bench.until(lambda snapshot: snapshot.rig is not RigState.RUNNING, within=0.5)
-    assert snapshot.rig in (RigState.DISARMED, RigState.FAULT)
+    assert snapshot.rig is RigState.DISARMED
+    assert "supply" in snapshot.reason
     bench.expect_no_current()
+    with pytest.raises(Refused, match="supply"):
+        bench.loop.arm(GAIT)
+    bench.board.supply = 24.0
+    bench.arm()
+    assert bench.run_for(0.5).rig is RigState.ARMED
+
+
+@pytest.mark.parametrize("tilt_deg", [10.0, 20.0, 35.0, 45.0])
+def test_the_rig_arms_at_every_tilt_and_keeps_the_robot(bench: Bench, tilt_deg: float) -> None:
+    bench.run_for(0.5)
+    bench.loop.arm(Gait(tilt=math.radians(tilt_deg)))
+    for _ in range(60):
+        assert bench.tick().rig is RigState.ARMED, bench.snapshot.reason
+
+
+def test_a_hold_stays_a_hold_while_the_currents_decay(bench: Bench) -> None:
+    bench.walk()
+    bench.disturbance.hidden = True
+    bench.until(lambda snapshot: snapshot.rig is RigState.HELD, within=0.5)
+    bench.run_for(1.0)
+    assert bench.snapshot.rig is RigState.HELD
+    assert bench.ended == []
+
+
+def test_a_board_that_restarts_latches_and_says_so(bench: Bench) -> None:
+    bench.walk()
+    bench.board.reset()
+    snapshot = bench.until(lambda snapshot: snapshot.rig is RigState.FAULT, within=0.5)
+    assert "reset" in snapshot.reason
+    bench.expect_no_current()
+
+
+def test_a_frame_from_before_the_last_one_is_not_looked_at(bench: Bench) -> None:
+    bench.arm()
+    bench.run_for(0.3)
+    newest = bench.machine.camera.read(0.05)
+    assert newest is not None
+    before = bench.snapshot.pose
+    assert before is not None
+    older = Frame(newest.image, newest.captured_at - 0.1, newest.index)
+    snapshot = bench.loop.tick(older, bench.machine.camera.now())
+    assert snapshot.pose is not None
+    assert snapshot.pose.distance_to(before.x, before.y) < 1e-3
+
+
+def test_a_gait_beyond_the_rigs_limits_is_refused_in_the_labs_units(bench: Bench) -> None:
+    bench.run_for(0.5)
+    with pytest.raises(Refused, match="field of 16 mT is beyond this rig's 15 mT"):
+        bench.loop.arm(Gait(field=0.016))
+    with pytest.raises(Refused, match="400 degrees/s is beyond this rig's 360 degrees/s"):
+        bench.loop.arm(Gait(max_rate=math.radians(400.0)))
 
 
 def test_a_loop_that_stands_still_is_held(bench: Bench) -> None:

@@ -64,11 +64,15 @@ async def test_each_choice_comes_with_a_schema_that_makes_a_form(api, path):
 
 async def test_the_gait_schema_gives_each_field_its_unit_and_range(api):
     fields = (await api.get("/gait")).json()["properties"]
-    assert list(fields) == ["sweep_deg", "tilt_deg", "field_mT", "max_rate_deg_s", "path_step_s"]
+    paper = ["sweep_deg", "tilt_deg", "field_mT", "max_rate_deg_s", "path_step_s"]
+    assert list(fields) == [*paper, "time_law", "speed_mm_s", "acceleration_mm_s2", "wait_mm", "approach"]
+    assert fields["time_law"]["enum"] == ["path_step", "constant_speed", "trapezoidal", "wait"]
+    assert fields["approach"]["type"] == "boolean"
     for field in fields.values():
-        assert field["unit"]
         assert field["title"]
         assert field["description"]
+    for field in (field for field in fields.values() if field["type"] == "number"):
+        assert field["unit"]
         assert "maximum" in field or "exclusiveMaximum" in field
 
 

@@ -216,3 +216,22 @@ async def test_a_saved_path_can_be_chosen_by_its_name(disarmed):
     assert (await disarmed.put("/selection", json=chosen)).status_code == 200
     assert (await disarmed.get("/selection")).json()["trajectory"]["name"] == "My square"
     assert (await disarmed.put("/selection", json=selection)).status_code == 200
+
+
+async def test_two_changes_at_once_both_count(running):
+    tilt = running.patch("/runs/current", json={"gait": {"tilt_deg": 22.0}})
+    sweep = running.patch("/runs/current", json={"gait": {"sweep_deg": 17.0}})
+    for answer in await asyncio.gather(tilt, sweep):
+        assert answer.status_code == 200
+    gait = (await running.get("/runs/current")).json()["gait"]
+    assert (gait["tilt_deg"], gait["sweep_deg"]) == (22.0, 17.0)
+
+
+async def test_events_are_paged_and_filtered(running):
+    await act(running, "/estop")
+    whole = (await running.get("/events", params={"limit": 2})).json()
+    assert len(whole["events"]) == 2
+    assert whole["next"] == 2
+    errors = (await running.get("/events", params={"severity": "error"})).json()["events"]
+    assert errors[0]["code"] == "estop"
+    assert {event["severity"] for event in errors} == {"error"}

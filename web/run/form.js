@@ -10,7 +10,7 @@ export function SchemaForm({ section, schema, values, onChange, children }) {
     <div class="fields">
       ${fieldsOf(schema).map((form) => html`
         <${Field} key=${`${section}.${form.name}`} id=${`${section}.${form.name}`} form=${form}
-          value=${values[form.name] ?? form.initial} onChange=${(value) => onChange(form.name, value)} />
+          value=${form.name in values ? values[form.name] : form.initial} onChange=${(value) => onChange(form.name, value)} />
       `)}
       ${children}
     </div>
@@ -93,7 +93,7 @@ function Switch({ id, value, onChange, describedBy }) {
 function Choice({ id, form, value, onChange, describedBy }) {
   return html`
     <select id=${id} aria-describedby=${describedBy} onChange=${(event) => onChange(form.choices[event.target.selectedIndex])}>
-      ${form.choices.map((choice) => html`<option selected=${choice === value}>${String(choice)}</option>`)}
+      ${form.choices.map((choice) => html`<option selected=${choice === value}>${show(choice, form)}</option>`)}
     </select>
   `;
 }

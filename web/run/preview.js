@@ -7,9 +7,17 @@ import { html } from "../view.js";
 const CONTROL_TICK_S = 0.1;
 const DEFAULT_WORKSPACE_MM = 120;
 
+/** How long one pass takes by the gait's time law, s; a robot that is waited for takes longer. */
+function passTime({ length_mm, duration_s }, { time_law, path_step_s, speed_mm_s, acceleration_mm_s2 }) {
+  if (time_law === "path_step") return (duration_s * CONTROL_TICK_S) / path_step_s;
+  if (time_law !== "trapezoidal") return length_mm / speed_mm_s;
+  const peak = Math.min(speed_mm_s, Math.sqrt(acceleration_mm_s2 * length_mm));
+  return length_mm / peak + peak / acceleration_mm_s2;
+}
+
 export function PathPicture() {
   const path = useStore((state) => state.path);
-  const step = useStore((state) => state.selection.gait.path_step_s);
+  const gait = useStore((state) => state.selection.gait);
   const side = useStore((state) => state.rig?.limits?.workspace_mm ?? DEFAULT_WORKSPACE_MM);
   if (!path) return html`<p class="hint path-missing">No path for these values.</p>`;
   const half = side / 2;
@@ -25,7 +33,7 @@ export function PathPicture() {
       </svg>
       <figcaption>
         <span>${quantity(path.length_mm, "mm", 0)} long</span>
-        <span>${clock((path.duration_s * CONTROL_TICK_S) / step)} min a pass</span>
+        <span>${clock(passTime(path, gait))} min a pass</span>
         <span class="soft">plate ${quantity(side, "mm", 0)} square</span>
       </figcaption>
     </figure>

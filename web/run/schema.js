@@ -30,10 +30,16 @@ function field(name, property) {
     integer: property.type === "integer",
     optional: property.optional ?? false,
     initial: property.default,
-    choices: property.enum ?? (property.const === undefined ? [] : [property.const]),
+    choices: choicesOf(property),
     low: property.minimum, high: property.maximum,
     above: property.exclusiveMinimum, below: property.exclusiveMaximum,
   };
+}
+
+/** A choice that may be left open has null, "none", as its first one. */
+function choicesOf({ enum: several, const: only, optional }) {
+  const choices = several ?? (only === undefined ? [] : [only]);
+  return optional && choices.length > 0 && !choices.includes(null) ? [null, ...choices] : choices;
 }
 
 function kindOf({ type, enum: choices, const: only }) {
@@ -95,6 +101,7 @@ function parsePoints(text) {
 }
 
 export function show(value, { kind }) {
+  if (kind === "choice") return value === null ? "none" : String(value).replaceAll("_", " ");
   if (value === null || value === undefined) return "";
   if (kind === "points") return value.map((point) => point.join(", ")).join("\n");
   return typeof value === "number" ? String(Number(value.toPrecision(8))) : String(value);

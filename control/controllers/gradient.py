@@ -1,0 +1,163 @@
+"""The optimization controller, "Ob" (paper, section 4), made exact.
+
+J(omega, sigma) = 1/2 |c(tau) - c_d|^2 + 1/2 w L^2 (theta(tau) - theta_d)^2, where c(tau) and theta(tau) are the
+centre and heading after turning at the rate omega about the pivot sigma for the look-ahead tau, by the exact arc,
+and c_d is where the reference will be then. Differs from print: descent instead of ascent, the missing L/2, a
+weight that makes the heading term commensurable, and a look-ahead longer than one tick, because a gradient over
+one tick cannot see past the sweep that it is committed to. The pivot has two values only, so the descent is made
+on either and the lower end taken, where print relaxes sigma, descends and rounds by its sign.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from pydantic import Field
+
+from control.controllers.controller import Decision, Situation, controllers
+from control.controllers.heading import HeadingParameters, WantedHeading
+from control.gait import Gait
+from control.model import PIVOT_A, PIVOT_B, Pivot, wrap
+
+BASE_LOOK_AHEAD = 0.33
+LOOK_AHEAD_PER_SWEEP = 0.955
+"""Look-ahead of 0.5 s at a sweep of 10 degrees and 0.83 s at 30, s and s/rad: best in pure kinematics."""
+ITERATIONS = 12
+CONVERGED = 1e-4
+"""The descent ends when a step is smaller than this, rad/s."""
+LARGEST_TURN = 0.5
+"""Largest change of the turn over the look-ahead in one step of the descent, rad."""
+FIRST_TURN = 0.2
+"""The two directions of turning are tried from this far on either side of standing still, rad."""
+SHORT_OF_GOAL = 0.3
+"""A robot that comes to rest farther than this from the desired point, in lengths, has to use the other pivot."""
+
+
+class GradientParameters(HeadingParameters):
+    look_ahead_s: float | None = Field(
+        default=None, gt=0.0, le=5.0, title="Look-ahead",
+        description="How far ahead the arc is predicted; left out, it follows from the sweep.",
+        json_schema_extra={"unit": "s"},
+    )  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class Cost:
+    """The value of J and its derivatives, for one situation.
+
+    x, y, heading: the robot's.  half: L/2.  look_ahead: tau, s.  desired_x, desired_y: where to be then, m.
+    wanted, weight: heading to have then, rad, and w L^2, m^2.
+    """
+
+    x: float
+    y: float
+    heading: float
+    half: float
+    look_ahead: float
+    desired_x: float
+    desired_y: float
+    wanted: float
+    weight: float
+
+    def value(self, rate: float, sigma: float) -> float:
+        """J, m^2."""
+        error_x, error_y, error_heading, _, _ = self._errors(rate, sigma)
+        return 0.5 * (error_x**2 + error_y**2 + self.weight * error_heading**2)
+
+    def by_rate(self, rate: float, sigma: float) -> float:
+        """dJ/d omega, m^2 s: dc/d omega = (L/2) sigma tau [cos theta', sin theta']."""
+        error_x, error_y, error_heading, sine, cosine = self._errors(rate, sigma)
+        along = self.half * sigma * (error_x * cosine + error_y * sine)
+        return self.look_ahead * (along + self.weight * error_heading)
+
+    def _errors(self, rate: float, sigma: float) -> tuple[float, float, float, float, float]:
+        after = self.heading + rate * self.look_ahead
+        sine, cosine = math.sin(after), math.cos(after)
+        half = self.half * sigma
+        return (
+            self.x + half * (sine - math.sin(self.heading)) - self.desired_x,
+            self.y - half * (cosine - math.cos(self.heading)) - self.desired_y,
+            wrap(after - self.wanted) if self.weight else 0.0,
+            sine,
+            cosine,
+        )
+
+
+def descend(cost: Cost, sigma: float, rate: float, max_rate: float) -> float:
+    """Follow -dJ/d omega from `rate` to rest, within the limits; rad/s.
+
+    The step is scaled by the Gauss-Newton curvature ((L/2)^2 + w L^2) tau^2, the same on either pivot.
+    """
+    tau = cost.look_ahead
+    scale = 1.0 / ((cost.half**2 + cost.weight) * tau * tau)
+    largest = LARGEST_TURN / tau
+    for _ in range(ITERATIONS):
+        step = max(-largest, min(largest, scale * cost.by_rate(rate, sigma)))
+        before, rate = rate, max(-max_rate, min(max_rate, rate - step))
+        if abs(rate - before) < CONVERGED:
+            break
+    return rate
+
+
+@controllers.register
+class Gradient:
+    """Descends the cost from a start on each pivot and each way round, and takes the lowest end."""
+
+    name = "gradient"
+    title = "Optimization (gradient)"
+    summary = "Descends the predicted distance to the reference over pivot and rate; can regulate heading."
+    Parameters = GradientParameters
+
+    def __init__(self, parameters: GradientParameters) -> None:
+        self._look_ahead = parameters.look_ahead_s
+        self._weight = parameters.effective_heading_weight
+        self._wanted = WantedHeading(parameters)
+
+    def step(self, situation: Situation) -> Decision:
+        """sigma may change only when a sweep is complete."""
+        cost = self._cost(situation)
+        limit = situation.gait.max_rate
+        pivots = (PIVOT_A, PIVOT_B) if situation.may_switch else (situation.pivot,)
+        first = FIRST_TURN / cost.look_ahead
+        ends: list[tuple[float, Pivot, float]] = []
+        for pivot in pivots:
+            for start in (first, -first):
+                rate = descend(cost, pivot, start, limit)
+                ends.append((cost.value(rate, pivot), pivot, rate))
+        lowest, pivot, rate = min(ends)
+        if self._is_at_rest_too_far(situation, lowest, rate * cost.look_ahead):
+            rate = _go_on(situation, rate, cost.look_ahead)
+        return Decision(pivot, rate)
+
+    def _cost(self, situation: Situation) -> Cost:
+        tau = look_ahead(situation.gait) if self._look_ahead is None else self._look_ahead
+        pose = situation.pose
+        x, y = situation.desired(tau)
+        return Cost(
+            pose.x,
+            pose.y,
+            pose.heading,
+            half=0.5 * situation.length,
+            look_ahead=tau,
+            desired_x=x,
+            desired_y=y,
+            wanted=self._wanted.at(situation, tau) if self._weight else 0.0,
+            weight=self._weight * situation.length**2,
+        )
+
+    @staticmethod
+    def _is_at_rest_too_far(situation: Situation, lowest: float, turn: float) -> bool:
+        """No turn about this pivot comes nearer, yet the robot is not there: the long axis points at the goal."""
+        far = 0.5 * (SHORT_OF_GOAL * situation.length) ** 2
+        return lowest > far and abs(turn) < situation.gait.sweep
+
+
+def look_ahead(gait: Gait) -> float:
+    """The default look-ahead for a sweep, s."""
+    return BASE_LOOK_AHEAD + LOOK_AHEAD_PER_SWEEP * gait.sweep
+
+
+def _go_on(situation: Situation, rate: float, tau: float) -> float:
+    """Complete the sweep over the look-ahead, the way it has begun: only then may the other pivot be taken."""
+    return math.copysign(min(situation.gait.sweep / tau, situation.gait.max_rate), situation.turned or rate)

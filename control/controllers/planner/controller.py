@@ -1,0 +1,161 @@
+"""The planner: walking is a chain of discrete arcs, so it is planned as one.
+
+At each completed sweep the cheapest chain of sweeps over the horizon is searched (`search`) and its first sweep
+taken; while that lasts, the rate is corrected so that it ends when the plan says.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from control.controllers.controller import Decision, Situation, controllers
+from control.controllers.heading import WantedHeading
+from control.controllers.planner.future import Ahead
+from control.controllers.planner.moves import LONGEST, Moves, MoveSettings, slot_for
+from control.controllers.planner.parameters import PlannerParameters
+from control.controllers.planner.search import Root, Search
+from control.controllers.planner.slip import SlipWatch, SwitchSlip
+from control.gait import Gait
+from control.model import Pivot, Pose, opposite
+
+MM2 = 1e-6
+EARLY_SHARES = (0.25, 0.5, 0.75, 1.0)
+"""Where a sweep may end when it may end early, in sweeps."""
+SLOWEST = 0.5
+"""A sweep that is early goes on at no less than this share of its planned rate."""
+PACE_SAMPLES = 48
+OVER_THE_EDGE = 1e-6
+
+
+@dataclass(frozen=True, slots=True)
+class Leg:
+    """The sweep under way. turn: rad, signed.  rate: planned, rad/s.  end: s.
+
+    departure: where it began.  left: the pivot that was left for it, None when it stayed the same.
+    turned_before: about that pivot, rad.
+    """
+
+    turn: float
+    rate: float
+    end: float
+    departure: Pose
+    left: Pivot | None
+    turned_before: float
+
+
+@controllers.register
+class Planner:
+    """Searches chains of sweeps over a receding horizon and walks the first sweep of the best."""
+
+    name = "planner"
+    title = "Planner"
+    summary = "Plans the next sweeps with the exact arcs and the path's future; the smallest error."
+    Parameters = PlannerParameters
+
+    def __init__(self, parameters: PlannerParameters) -> None:
+        self._parameters = parameters
+        self._wanted = WantedHeading(parameters)
+        self._gait: Gait | None = None
+        self._leg: Leg | None = None
+        self._turned = 0.0
+        self._watch = SlipWatch(SwitchSlip())
+
+    def step(self, situation: Situation) -> Decision:
+        if situation.gait != self._gait:
+            self._prepare(situation)
+        if situation.may_switch:
+            self._arrive(situation)
+            return self._plan(situation)
+        if self._leg is None:
+            return Decision(situation.pivot, 0.0)
+        return Decision(situation.pivot, self._rate(self._leg, situation), abs(self._leg.turn))
+
+    def _prepare(self, situation: Situation) -> None:
+        parameters, gait, model = self._parameters, situation.gait, situation.slip
+        turns = tuple(share * gait.sweep for share in (EARLY_SHARES if parameters.early_end else (1.0,)))
+        typical = turns[len(turns) // 2 - 1] if len(turns) > 1 else turns[0]
+        settings = MoveSettings(
+            length=situation.length,
+            max_rate=gait.max_rate,
+            slot=slot_for(typical, gait.max_rate, _pace(situation), situation.length),
+            switch_time=model.switch_time if model else 0.0,
+            turns=turns,
+            switch_cost=parameters.switch_weight * MM2,
+            sweep_cost=parameters.sweep_weight * MM2,
+            effort=parameters.effort_weight * MM2,
+        )
+        self._moves = Moves(settings)
+        self._search = Search(self._moves, parameters.horizon_slots, parameters.beam_width)
+        if self._gait is None and model is not None:
+            self._watch = SlipWatch(SwitchSlip(model.out, model.forward_base, model.forward_per_sweep))
+        self._gait = gait
+
+    def _arrive(self, situation: Situation) -> None:
+        """A sweep has ended: learn from it."""
+        leg, self._leg = self._leg, None
+        if leg is None:
+            return
+        turn = situation.pose.heading - leg.departure.heading
+        if leg.left is None:
+            self._turned += turn
+            return
+        if self._parameters.learn_slip:
+            self._watch.see(
+                leg.departure, leg.left, leg.turned_before, situation.pose, self._moves.settings.length
+            )
+        self._turned = turn
+
+    def _plan(self, situation: Situation) -> Decision:
+        pose, now = situation.pose, situation.reference_time
+        plan = self._search.best(self._root(situation), self._ahead(situation), self._watch.slip)
+        if plan is None or not plan.first.turn:
+            return Decision(situation.pivot, 0.0)
+        move = plan.first
+        pivot = opposite(situation.pivot) if move.switches else situation.pivot
+        rate = self._moves.rate(move)
+        end = now + self._moves.settings.slot * move.duration
+        left = situation.pivot if move.switches else None
+        self._leg = Leg(move.turn, rate, end, pose, left, self._turned)
+        return Decision(pivot, rate, abs(move.turn))
+
+    def _root(self, situation: Situation) -> Root:
+        pose = situation.pose
+        edge = math.inf if situation.workspace is None else situation.workspace
+        return Root(
+            place=complex(pose.x, pose.y),
+            facing=cmath.exp(1j * pose.heading),
+            pivot=float(situation.pivot),
+            turned=self._turned,
+            edge=max(edge, abs(pose.x), abs(pose.y)) + OVER_THE_EDGE,
+        )
+
+    def _ahead(self, situation: Situation) -> Ahead:
+        slot = self._moves.settings.slot
+        times = [slot * index for index in range(1, self._search.slots + LONGEST)]
+        points = np.array([complex(*situation.desired(time)) for time in times])
+        weight = self._parameters.effective_heading_weight
+        if not weight:
+            return Ahead(points)
+        headings = np.exp(1j * np.array([self._wanted.at(situation, time) for time in times]))
+        return Ahead(points, headings, weight * situation.length**2)
+
+    @staticmethod
+    def _rate(leg: Leg, situation: Situation) -> float:
+        """What completes the sweep when the plan says, rad/s."""
+        left = abs(leg.turn) - math.copysign(1.0, leg.turn) * situation.turned
+        time = leg.end - situation.reference_time
+        wanted = left / time if time > 0.0 else math.inf
+        fastest = situation.gait.max_rate
+        return math.copysign(min(max(wanted, SLOWEST * abs(leg.rate)), fastest), leg.turn)
+
+
+def _pace(situation: Situation) -> float:
+    """Mean speed of the desired point over a pass, m/s."""
+    duration = situation.trajectory.duration
+    points = [situation.trajectory.point(duration * index / PACE_SAMPLES) for index in range(PACE_SAMPLES)]
+    way = sum(math.dist(here, there) for here, there in zip(points, points[1:], strict=False))
+    return way / duration

@@ -1,0 +1,1 @@
+"""Commands of `pivotrig`, one a file."""
