@@ -29,7 +29,7 @@ class GaitModel:
     switch_time: the robot stands still for this long at a switch, s.
     backlash: play between the field's heading and the body's, full width, rad.
     heading_offset: of the field's heading beyond the seen one, in the middle of the play, rad.
-    lag: the body comes after the field by this time while it is pulled along, s.
+    lag: the body comes after the field by this time while it is pulled along, beyond the known actuation delay, s.
     uncertainty: None where the figures were not identified.
     """
 

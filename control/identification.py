@@ -200,7 +200,7 @@ def _play(stands: Sequence[Stand]) -> tuple[float, float, float]:
 
 def _solve(design: Array, values: Array) -> Array:
     """Least squares; what the walk does not show (one sweep only, say) is shared out evenly, not made up."""
-    return np.linalg.lstsq(design, values, rcond=1e-3)[0]
+    return np.asarray(np.linalg.lstsq(design, values, rcond=1e-3)[0], dtype=np.float64)
 
 
 def _axes(heading: Array) -> tuple[Array, Array]:

@@ -10,11 +10,12 @@ from __future__ import annotations
 import math
 from collections import deque
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 from control.actuation import Actuation
 from control.coils import CoilSet
+from control.controllers.manual import Jog, Manual
 from control.field_model import FieldModel
 from control.gait import Gait
 from control.link.conversion import BoardState, LinkError, Telemetry
@@ -112,6 +113,7 @@ class ControlLoop:
         self._latched: Fault | None = None
         self._walk: Walk | None = None
         self._gait = Gait()
+        self._manual = Manual()
         self._tick = 0
         self._now = self._frame_at = now
         self._telemetry: Telemetry | None = None
@@ -183,9 +185,18 @@ class ControlLoop:
         walk = Walk(id, request, self._parts.length, self._parts.field.pivot, pose)
         check_inside(walk.trajectory, self._parts.coils.workspace)
         walk.workspace = self._parts.coils.workspace
+        self._manual.forget()
         self._walk = walk
         self._gait = request.selection.gait
         self._enter(state, "walking", "info")
+
+    def jog(self, jog: Jog) -> None:
+        """Swing by hand for 300 ms at most; raises `Refused` unless armed without a run."""
+        after(self._state, Event.JOG)
+        gait = self._gait if jog.tilt is None else replace(self._gait, tilt=jog.tilt)
+        check_gait(replace(gait, max_rate=abs(jog.rate)), self._parts.limits)
+        self._gait = gait
+        self._manual.take(jog, self._now)
 
     def change(self, selection: Selection) -> None:
         """Another controller, trajectory or gait for the run that is on; raises like `start`."""
@@ -310,8 +321,7 @@ class ControlLoop:
             return
         try:
             stride = self._stride(now, gap, pose)
-            name = self._walk.request.selection.controller.name if self._walk else ""
-            self._parts.actuation.drive(name, stride, pose, self._gait)
+            self._parts.actuation.drive(self._driven_by(now), stride, pose, self._gait)
         except ControllerFault as fault:
             self._latch("controller", str(fault))
         except ValueError as error:
@@ -325,8 +335,20 @@ class ControlLoop:
     def _stride(self, now: float, gap: float, pose: Pose) -> Stride:
         field = self._parts.field
         if self._walk is None or self._state is not RigState.RUNNING:
-            return Stride(field.pivot, 0.0, field.heading)
+            return self._by_hand(now)
         return self._walk.step(now, gap, pose, field, self._parts.perception)
+
+    def _by_hand(self, now: float) -> Stride:
+        """A fresh jog, or standing still."""
+        field, jog = self._parts.field, self._manual.decide(now)
+        if jog is None or jog.sweep is None or not field.is_ready:
+            return Stride(field.pivot, 0.0, field.heading)
+        return Stride(jog.pivot, jog.rate, field.heading + math.copysign(jog.sweep, jog.rate))
+
+    def _driven_by(self, now: float) -> str:
+        if self._walk is not None:
+            return self._walk.request.selection.controller.name
+        return self._manual.name if self._manual.decide(now) is not None else ""
 
     # Changes of state ----------------------------------------------------------------------------
 
@@ -356,6 +378,7 @@ class ControlLoop:
         return PIVOT_A if self._walk is None else self._walk.walker.sweep.pivot
 
     def _stop_coils(self) -> None:
+        self._manual.forget()
         self._parts.actuation.stop(self._now)
 
     def _hold(self, reason: str, severity: str, code: str = "hold") -> None:

@@ -46,6 +46,7 @@ class Event(StrEnum):
 
     ARM = "arm"
     START = "start"
+    JOG = "jog"
     FINISH = "finish"
     HOLD = "hold"
     RESUME = "resume"
@@ -65,6 +66,7 @@ _D, _A, _R, _H, _F = (
 TRANSITIONS: dict[tuple[RigState, Event], RigState] = {
     (_D, Event.ARM): _A,
     (_A, Event.START): _R,
+    (_A, Event.JOG): _A,
     (_R, Event.FINISH): _A,
     (_A, Event.HOLD): _H,
     (_R, Event.HOLD): _H,

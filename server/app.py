@@ -16,6 +16,7 @@ from server.api import (
     actions,
     camera,
     controllers,
+    manual,
     problems,
     runs,
     selection,
@@ -111,7 +112,7 @@ def scene_geometry(rig: Rig) -> SceneGeometry:
 
 def add_routes(app: FastAPI) -> None:
     api = APIRouter(prefix=PREFIX, responses=RESPONSES)
-    for room in (state, selection, actions, controllers, trajectories, runs, camera, telemetry):
+    for room in (state, selection, actions, manual, controllers, trajectories, runs, camera, telemetry):
         api.include_router(room.router)
     api.include_router(camera.sockets)
     app.include_router(api)

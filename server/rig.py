@@ -22,6 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from control.coils import CoilSet
+from control.controllers.manual import Jog
 from control.loop import Announcement, Ended
 from control.model import Frame
 from control.runs import Choice, Run, RunRequest, RunState, Selection
@@ -213,6 +214,9 @@ class Rig:
 
     async def reset(self) -> None:
         await self._ask(self._loop.reset)
+
+    async def jog(self, jog: Jog) -> None:
+        await self._ask(lambda: self._loop.jog(jog))
 
     async def start_run(self, request: RunRequest) -> Run:
         run = Run(new_id(), request, RunState.RUNNING, datetime.now(UTC))

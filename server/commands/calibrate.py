@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from dataclasses import asdict
 from typing import Annotated, Any
 
 import typer
@@ -107,12 +108,10 @@ def _calibrate(rig_file: RigFile, gait: Gait, legs: int, leg: float, rate: float
 
 def figures_json(model: GaitModel) -> dict[str, dict[str, float]]:
     """Each figure with its standard error, in the lab's units."""
-    errors = model.uncertainty
+    values = asdict(model)
+    errors = values["uncertainty"]
     return {
-        name: {
-            "value": round(getattr(model, field) / unit, 5),
-            "standard_error": round(getattr(errors, field) / unit, 5),
-        }
+        name: {"value": round(values[field] / unit, 5), "standard_error": round(errors[field] / unit, 5)}
         for field, (name, unit) in FIGURES.items()
     }
 
@@ -124,7 +123,7 @@ _MEANING = {
     "out_mm": "per switch: the new pivot lands this far out, along the body",
     "forward_base_mm": "per switch: the new pivot lands this far ahead,",
     "forward_per_sweep_mm_rad": "    and this much further per radian of the sweep",
-    "lag_ms": "the body comes after the field by this time",
+    "lag_ms": "the body comes this much later than the rig file says (actuation delay)",
 }
 
 

@@ -51,6 +51,7 @@ def board(tmp_path: Path) -> Iterator[SeparateBoard]:
         monitor.close()
 
 
+@pytest.mark.exclusive
 @pytest.mark.parametrize("last_signal", [signal.SIGKILL, signal.SIGSTOP])
 def test_the_board_zeroes_its_drive_when_the_server_dies_in_the_middle_of_a_run(
     board: SeparateBoard, tmp_path: Path, last_signal: signal.Signals
@@ -67,6 +68,7 @@ def test_the_board_zeroes_its_drive_when_the_server_dies_in_the_middle_of_a_run(
     assert all(not any(sample.duty) for sample in after if sample.milliseconds >= first_zero)
 
 
+@pytest.mark.exclusive
 def test_a_signal_zeroes_the_coils_first_and_the_server_is_gone_within_5_seconds(
     board: SeparateBoard, tmp_path: Path
 ) -> None:

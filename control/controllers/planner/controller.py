@@ -18,8 +18,9 @@ from control.controllers.planner.future import Ahead
 from control.controllers.planner.moves import LONGEST, Moves, MoveSettings, slot_for
 from control.controllers.planner.parameters import PlannerParameters
 from control.controllers.planner.search import Root, Search
-from control.controllers.planner.slip import SlipWatch, SwitchSlip
-from control.gait import Gait
+from control.controllers.planner.slip import Sighting, SlipWatch, SwitchSlip
+from control.gait import Gait, advance_of_sweep
+from control.gait_model import GaitModel
 from control.model import Pivot, Pose, opposite
 
 MM2 = 1e-6
@@ -27,8 +28,13 @@ EARLY_SHARES = (0.25, 0.5, 0.75, 1.0)
 """Where a sweep may end when it may end early, in sweeps."""
 SLOWEST = 0.5
 """A sweep that is early goes on at no less than this share of its planned rate."""
+WHOLE = (1.0,)
 PACE_SAMPLES = 48
-OVER_THE_EDGE = 1e-6
+"""The path's speed is the mean over so many places of a pass."""
+PACE_STEP = 0.05
+"""Time over which it is measured there, s."""
+ROUNDING = 1e-6
+"""A robot at the edge of the workspace may stay there, m."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,7 +42,6 @@ class Leg:
     """The sweep under way. turn: rad, signed.  rate: planned, rad/s.  end: s.
 
     departure: where it began.  left: the pivot that was left for it, None when it stayed the same.
-    turned_before: about that pivot, rad.
     """
 
     turn: float
@@ -44,7 +49,6 @@ class Leg:
     end: float
     departure: Pose
     left: Pivot | None
-    turned_before: float
 
 
 @controllers.register
@@ -68,45 +72,45 @@ class Planner:
         if situation.gait != self._gait:
             self._prepare(situation)
         if situation.may_switch:
-            self._arrive(situation)
+            self._arrive(situation.pose)
             return self._plan(situation)
         if self._leg is None:
             return Decision(situation.pivot, 0.0)
         return Decision(situation.pivot, self._rate(self._leg, situation), abs(self._leg.turn))
 
     def _prepare(self, situation: Situation) -> None:
+        """Tables for a gait that is new."""
         parameters, gait, model = self._parameters, situation.gait, situation.slip
-        turns = tuple(share * gait.sweep for share in (EARLY_SHARES if parameters.early_end else (1.0,)))
-        typical = turns[len(turns) // 2 - 1] if len(turns) > 1 else turns[0]
+        known = model or GaitModel(situation.length)
+        shares = EARLY_SHARES if parameters.early_end else WHOLE
         settings = MoveSettings(
-            length=situation.length,
+            length=known.length,
             max_rate=gait.max_rate,
-            slot=slot_for(typical, gait.max_rate, _pace(situation), situation.length),
-            switch_time=model.switch_time if model else 0.0,
-            turns=turns,
+            slot=_slot(situation, shares[(len(shares) - 1) // 2] * gait.sweep, known),
+            switch_time=known.switch_time,
+            turns=tuple(share * gait.sweep for share in shares),
             switch_cost=parameters.switch_weight * MM2,
             sweep_cost=parameters.sweep_weight * MM2,
             effort=parameters.effort_weight * MM2,
         )
         self._moves = Moves(settings)
         self._search = Search(self._moves, parameters.horizon_slots, parameters.beam_width)
-        if self._gait is None and model is not None:
-            self._watch = SlipWatch(SwitchSlip(model.out, model.forward_base, model.forward_per_sweep))
+        if self._gait is None:
+            self._watch = SlipWatch(SwitchSlip(known.out, known.forward_base, known.forward_per_sweep))
         self._gait = gait
 
-    def _arrive(self, situation: Situation) -> None:
-        """A sweep has ended: learn from it."""
+    def _arrive(self, pose: Pose) -> None:
+        """A sweep has ended at `pose`: learn from it."""
         leg, self._leg = self._leg, None
         if leg is None:
             return
-        turn = situation.pose.heading - leg.departure.heading
+        turn = pose.heading - leg.departure.heading
         if leg.left is None:
             self._turned += turn
             return
         if self._parameters.learn_slip:
-            self._watch.see(
-                leg.departure, leg.left, leg.turned_before, situation.pose, self._moves.settings.length
-            )
+            sighting = Sighting(leg.departure, leg.left, self._turned, pose)
+            self._watch.see(sighting, self._moves.settings.length)
         self._turned = turn
 
     def _plan(self, situation: Situation) -> Decision:
@@ -119,7 +123,7 @@ class Planner:
         rate = self._moves.rate(move)
         end = now + self._moves.settings.slot * move.duration
         left = situation.pivot if move.switches else None
-        self._leg = Leg(move.turn, rate, end, pose, left, self._turned)
+        self._leg = Leg(move.turn, rate, end, pose, left)
         return Decision(pivot, rate, abs(move.turn))
 
     def _root(self, situation: Situation) -> Root:
@@ -130,7 +134,7 @@ class Planner:
             facing=cmath.exp(1j * pose.heading),
             pivot=float(situation.pivot),
             turned=self._turned,
-            edge=max(edge, abs(pose.x), abs(pose.y)) + OVER_THE_EDGE,
+            edge=max(edge, abs(pose.x), abs(pose.y)) + ROUNDING,
         )
 
     def _ahead(self, situation: Situation) -> Ahead:
@@ -153,9 +157,16 @@ class Planner:
         return math.copysign(min(max(wanted, SLOWEST * abs(leg.rate)), fastest), leg.turn)
 
 
-def _pace(situation: Situation) -> float:
-    """Mean speed of the desired point over a pass, m/s."""
-    duration = situation.trajectory.duration
-    points = [situation.trajectory.point(duration * index / PACE_SAMPLES) for index in range(PACE_SAMPLES)]
-    way = sum(math.dist(here, there) for here, there in zip(points, points[1:], strict=False))
-    return way / duration
+def _slot(situation: Situation, typical: float, model: GaitModel) -> float:
+    """Slot, s. typical: a sweep that is made often, rad."""
+    gait = situation.gait
+    return slot_for(typical, gait.max_rate, model.switch_time, _sweep_time(situation, typical))
+
+
+def _sweep_time(situation: Situation, turn: float) -> float:
+    """How long a sweep may take that keeps up with the path, s; 0, as little as can be, where it stands still."""
+    path = situation.trajectory
+    starts = (path.duration * index / PACE_SAMPLES for index in range(PACE_SAMPLES))
+    way = sum(math.dist(path.point(start), path.point(start + PACE_STEP)) for start in starts)
+    pace = way / (PACE_SAMPLES * PACE_STEP)
+    return advance_of_sweep(min(turn, math.pi), situation.length) / pace if pace > 0.0 else 0.0

@@ -44,7 +44,7 @@ class Horizon:
         self.counts: Float = (starts + np.arange(1, LONGEST + 1) <= slots).astype(float)
         self.within = moves.within.T.copy()
         self.arcs: Complex = moves.arcs.conj().T.copy()
-        self.spins: Complex = (np.exp(-1j * moves.turned) * moves.within).T.copy()
+        self.spins: Complex = (np.exp(-1j * moves.turned) * moves.within).astype(complex).T.copy()
         self.relations = np.where(moves.switches, 0.0, 1.0), np.where(moves.switches, 1.0, 0.0)
         self._template = self._without_path()
 

@@ -8,7 +8,6 @@ move on the same pivot and -1 for one on the other.
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -26,7 +25,7 @@ BLOCK = DURATIONS[0]
 """No move is shorter, so this many slots can be searched at once."""
 SLOTS_OF_A_SWEEP = 8.0
 """A sweep that keeps up with the path takes about this many slots."""
-COARSEST = 4.0
+COARSEST = 2.0
 """The slot is at most this many times the one that the fastest sweep needs."""
 ROUNDING = 1e-9
 
@@ -117,13 +116,11 @@ def _price(move: Move, settings: MoveSettings) -> float:
     return switch + settings.sweep_cost + settings.effort * abs(move.turn)
 
 
-def slot_for(turn: float, max_rate: float, pace: float, length: float) -> float:
-    """Slot, s: the fastest sweep takes the shortest duration, or a longer one where the path is slow.
+def slot_for(turn: float, max_rate: float, switch_time: float, sweep_time: float) -> float:
+    """Slot, s: as fine as the paces allow. turn: of a typical sweep, rad.  sweep_time: what the path leaves it, s.
 
-    turn: a typical sweep, rad.  pace: of the path, m/s.
+    The fastest sweep takes the shortest duration, with a switch at most twice that; on a slow path it takes longer.
     """
-    shortest = turn / max_rate / DURATIONS[0]
-    if pace <= 0.0:
-        return shortest
-    sweep_time = length * math.sin(0.5 * min(turn, math.pi)) / pace
-    return max(shortest, min(sweep_time / SLOTS_OF_A_SWEEP, COARSEST * shortest))
+    fastest = turn / max_rate
+    finest = max(fastest / BLOCK, (fastest + switch_time) / (2 * BLOCK))
+    return max(finest, min(sweep_time / SLOTS_OF_A_SWEEP, COARSEST * finest))

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from control.controllers.planner.moves import Complex, Float
-from control.model import Pivot, Pose, swing
+from control.model import Pivot, Pose, opposite, swing
 
 LARGEST_TURN = math.radians(40.0)
 """A longer turn about one pivot slips no further (physics.md: fitted to sweeps up to here), rad."""
@@ -42,6 +42,23 @@ class SwitchSlip:
         return facing * (forward - 1j * self.out * pivot)
 
 
+@dataclass(frozen=True, slots=True)
+class Sighting:
+    """A sweep began at `before` by leaving the pivot `left`, which had turned by `turned`, rad; it ended at `after`."""
+
+    before: Pose
+    left: Pivot
+    turned: float
+    after: Pose
+
+    def missed(self, length: float) -> complex:
+        """Where it ended less where an exact arc would have, in the axes of the robot at `before`, m."""
+        turn = self.after.heading - self.before.heading
+        arrival = swing(self.before, opposite(self.left), turn, length)
+        apart = complex(self.after.x - arrival.x, self.after.y - arrival.y)
+        return apart * cmath.exp(-1j * self.before.heading)
+
+
 class SlipWatch:
     """Compares where sweeps ended with where exact arcs would have, and corrects the mean slip on line."""
 
@@ -49,19 +66,18 @@ class SlipWatch:
         self.slip = expected
         self._seen = 0
 
-    def see(self, before: Pose, pivot: Pivot, turned: float, after: Pose, length: float) -> None:
-        """A sweep began at `before` with a switch from `pivot`, which had turned by `turned`, and ended at `after`."""
-        arrival = swing(before, -pivot, after.heading - before.heading, length)  # type: ignore[arg-type]
-        missed = complex(after.x - arrival.x, after.y - arrival.y) * cmath.exp(-1j * before.heading)
+    def see(self, sighting: Sighting, length: float) -> None:
+        """Take one switch into account; length: between the pivots, m."""
+        missed, turned = sighting.missed(length), sighting.turned
         if turned == 0.0 or not abs(missed) <= BELIEVABLE * length:
             return
         self._seen += 1
         gain = max(LEAST_GAIN, 1.0 / (self._seen + FIRST_WEIGHT))
-        size = min(abs(turned), LARGEST_TURN)
-        forward = missed.real * pivot * math.copysign(1.0, turned)
-        expected = self.slip.forward_base + self.slip.forward_per_turn * size
+        known = self.slip
+        forward = missed.real * sighting.left * math.copysign(1.0, turned)
+        expected = known.forward_base + known.forward_per_turn * min(abs(turned), LARGEST_TURN)
         self.slip = SwitchSlip(
-            out=self.slip.out + gain * (-missed.imag * pivot - self.slip.out),
-            forward_base=self.slip.forward_base + gain * (forward - expected),
-            forward_per_turn=self.slip.forward_per_turn,
+            out=known.out + gain * (-missed.imag * sighting.left - known.out),
+            forward_base=known.forward_base + gain * (forward - expected),
+            forward_per_turn=known.forward_per_turn,
         )
