@@ -131,10 +131,11 @@ class Estimator:
         """Predict to the capture time of the frame that is about to be searched; None when nothing is known."""
         if not self._known:
             return None
-        pose, self._grip, jacobian, noise = self._motion(self._time, time)
+        motion = self._motion(self._time, time)
+        pose, self._grip = motion.arrival, motion.grip
         self._filter.arrival = np.array([pose.x, pose.y, pose.heading])
-        self._filter.F = jacobian
-        self._filter.Q = noise
+        self._filter.F = motion.jacobian()
+        self._filter.Q = motion.noise()
         self._filter.predict()
         self._time = time
         at = time - self._settings.actuation_delay
@@ -168,10 +169,16 @@ class Estimator:
 
     def carry(self, time: float) -> Carried:
         """The estimate carried forward to `time` (s) through what the field has done since."""
-        pose, _, jacobian, noise = self._motion(self._time, time)
-        covariance = jacobian @ self._filter.P @ jacobian.T + noise
-        sigma = np.sqrt(np.maximum(covariance.diagonal(), 0.0))
-        return Carried(pose, (float(sigma[0]), float(sigma[1]), float(sigma[2])))
+        motion = self._motion(self._time, time)
+        (xx, _, xh), (_, yy, yh), (_, _, hh) = self._filter.P.tolist()
+        # The diagonal of F P F' + Q, with F as in `Motion.jacobian`.
+        variances = (
+            xx - 2.0 * motion.dy * xh + motion.dy**2 * hh + motion.position_noise,
+            yy + 2.0 * motion.dx * yh + motion.dx**2 * hh + motion.position_noise,
+            hh + motion.heading_noise,
+        )
+        x, y, heading = (math.sqrt(max(variance, 0.0)) for variance in variances)
+        return Carried(motion.arrival, (x, y, heading))
 
     @property
     def covariance(self) -> NDArray[np.float64]:
@@ -182,10 +189,8 @@ class Estimator:
         x, y, heading = self._filter.x.tolist()
         return Pose(x, y, heading)
 
-    def _motion(
-        self, start: float, end: float
-    ) -> tuple[Pose, Grip, NDArray[np.float64], NDArray[np.float64]]:
-        """Arrival, grip, Jacobian and process noise of the body's motion from `start` to `end`."""
+    def _motion(self, start: float, end: float) -> Motion:
+        """The body's motion from `start` to `end` (s), as the field has led it."""
         delay = self._settings.actuation_delay
         departure, grip = self._pose(), self._grip
         arrival, noise = departure, _Noise(self._settings, end - start, self._field.is_ready)
@@ -197,7 +202,28 @@ class Estimator:
             if pivot is not None and turn.pivot != pivot:
                 noise.switch()
             grip, pivot = held, turn.pivot
-        return arrival, grip, _jacobian(departure, arrival), noise.covariance()
+        dx, dy = arrival.x - departure.x, arrival.y - departure.y
+        return Motion(arrival, grip, dx, dy, noise.position, noise.heading)
+
+
+@dataclass(frozen=True, slots=True)
+class Motion:
+    """One piece of the body's motion: where it leads (dx, dy: displacement, m), and its process noise (variances)."""
+
+    arrival: Pose
+    grip: Grip
+    dx: float
+    dy: float
+    position_noise: float
+    heading_noise: float
+
+    def jacobian(self) -> NDArray[np.float64]:
+        """d(arrival)/d(departure): the displacement is fixed in the body's frame, so it turns with the heading."""
+        return np.array([[1.0, 0.0, -self.dy], [0.0, 1.0, self.dx], [0.0, 0.0, 1.0]])
+
+    def noise(self) -> NDArray[np.float64]:
+        """Covariance of the process noise, (3, 3)."""
+        return np.diag([self.position_noise, self.position_noise, self.heading_noise])
 
 
 class _Noise:
@@ -206,23 +232,15 @@ class _Noise:
     def __init__(self, settings: EstimatorSettings, elapsed: float, is_held: bool) -> None:
         s, elapsed = settings, max(elapsed, 0.0)
         self._settings = settings
-        self._position = (s.drift_position if is_held else s.free_position) ** 2 * elapsed
-        self._heading = (s.drift_heading if is_held else s.free_heading) ** 2 * elapsed
+        self.position = (s.drift_position if is_held else s.free_position) ** 2 * elapsed
+        self.heading = (s.drift_heading if is_held else s.free_heading) ** 2 * elapsed
 
     def turn(self, angle: float, is_tight: bool) -> None:
         share = self._settings.swing if is_tight else self._settings.loose
-        self._heading += (share * angle) ** 2
+        self.heading += (share * angle) ** 2
 
     def switch(self) -> None:
-        self._position += self._settings.slip**2
-
-    def covariance(self) -> NDArray[np.float64]:
-        return np.diag([self._position, self._position, self._heading])
-
-
-def _jacobian(before: Pose, after: Pose) -> NDArray[np.float64]:
-    """d(after)/d(before): the displacement is fixed in the body's frame, so it turns with the heading."""
-    return np.array([[1.0, 0.0, before.y - after.y], [0.0, 1.0, after.x - before.x], [0.0, 0.0, 1.0]])
+        self.position += self._settings.slip**2
 
 
 def _sighting(x: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import errno
 import ipaddress
+import os
 import signal
 import socket
+import sys
 import webbrowser
 from pathlib import Path
 from types import FrameType
+from typing import NoReturn
 
 import platformdirs
 import uvicorn
@@ -26,6 +29,11 @@ LARGEST_MESSAGE = 65_536
 """Bytes in one WebSocket message from a client."""
 
 
+TURN = 0.0002
+"""How long another thread may keep the interpreter while the rig's thread waits for it, s. Python's own 5 ms would
+be longer than the whole way from a frame to its command."""
+
+
 class ServeError(Exception):
     """The server cannot start; the text says why and what to do."""
 
@@ -34,6 +42,7 @@ def serve_rig(settings: RigFile, host: str, port: int, data: Path | None, open_b
     """Serve until a signal comes; raises `ServeError`."""
     _prepare_data(data)
     listener = _listen(host, port)
+    sys.setswitchinterval(TURN)
     try:
         machine = build_machine(settings, realtime=True)
     except (ValueError, LinkError, CameraError, OSError) as error:
@@ -45,6 +54,14 @@ def serve_rig(settings: RigFile, host: str, port: int, data: Path | None, open_b
         server.run(sockets=[listener])
     if server.failure is not None:
         raise ServeError(f"the rig could not be opened: {server.failure}")
+    if server.hangs:
+        _leave("the control loop never came back")
+
+
+def _leave(reason: str) -> NoReturn:
+    """End at once: the interpreter would wait for the thread that hangs."""
+    print(f"pivotrig: {reason}", file=sys.stderr, flush=True)
+    os._exit(1)
 
 
 class _Server(uvicorn.Server):
@@ -66,6 +83,10 @@ class _Server(uvicorn.Server):
             server_header=False,
         )
         super().__init__(config)
+
+    @property
+    def hangs(self) -> bool:
+        return self._rig.hangs
 
     def handle_exit(self, sig: int, frame: FrameType | None) -> None:  # noqa: ARG002 (uvicorn's signature)
         """Zero current first. The exit is then an orderly one, and the status 0; a second Ctrl-C cuts it short."""

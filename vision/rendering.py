@@ -152,7 +152,7 @@ class Painter:
 
     def _colour(self, background: Image, coverage: MatLike, corners: NDArray) -> Image:
         width, height = self._optics.size
-        u, v = np.mean(corners, axis=0).tolist()
+        u, v = (sum(coordinate) / 4.0 for coordinate in zip(*corners.tolist(), strict=True))
         light = self._light[min(max(round(v), 0), height - 1), min(max(round(u), 0), width - 1)]
         flat = [
             round(min(max(value * float(light) - self._dark, 0.0), 255.0)) for value in self._scene.colour
