@@ -15,7 +15,7 @@ from filterpy.kalman import ExtendedKalmanFilter
 from numpy.typing import NDArray
 
 from control.backlash import ENGAGED_AFTER
-from control.field_model import FieldModel
+from control.field_model import FieldModel, Turn
 from control.model import PIVOT_A, PIVOT_B, Expectation, Measurement, Pivot, Pose, body_tilt, swing, wrap
 from control.snapshot import Vector
 
@@ -64,20 +64,23 @@ class Grip:
 
     slack: where the body lies within the play, rad, within +- half of it.
     pull: how far the field has turned since it last reversed, rad, signed.
+    pivot: the end it presses down; None before the first motion.
     """
 
     slack: float = 0.0
     pull: float = 0.0
+    pivot: Pivot | None = None
 
     @property
     def is_tight(self) -> bool:
         """The play is surely taken up."""
         return abs(self.pull) >= ENGAGED_AFTER
 
-    def after(self, angle: float, half_play: float) -> Grip:
-        """The grip once the field has turned by `angle`, rad."""
-        slack = max(-half_play, min(half_play, self.slack + angle))
-        return Grip(slack, angle if angle * self.pull < 0.0 else self.pull + angle)
+    def after(self, turn: Turn, half_play: float) -> Grip:
+        """The grip once the field has made this turn."""
+        slack = max(-half_play, min(half_play, self.slack + turn.angle))
+        pull = turn.angle if turn.angle * self.pull < 0.0 else self.pull + turn.angle
+        return Grip(slack, pull, turn.pivot)
 
 
 class PivotFilter(ExtendedKalmanFilter):
@@ -194,14 +197,13 @@ class Estimator:
         delay = self._settings.actuation_delay
         departure, grip = self._pose(), self._grip
         arrival, noise = departure, _Noise(self._settings, end - start, self._field.is_ready)
-        pivot: Pivot | None = None
         for turn in self._field.turns(start - delay, end - delay):
-            held = grip.after(turn.angle, self.half_play)
+            held = grip.after(turn, self.half_play)
             arrival = swing(arrival, turn.pivot, turn.angle + grip.slack - held.slack, self._length)
             noise.turn(turn.angle, held.is_tight)
-            if pivot is not None and turn.pivot != pivot:
+            if grip.pivot not in (None, turn.pivot):
                 noise.switch()
-            grip, pivot = held, turn.pivot
+            grip = held
         dx, dy = arrival.x - departure.x, arrival.y - departure.y
         return Motion(arrival, grip, dx, dy, noise.position, noise.heading)
 

@@ -166,3 +166,18 @@ def test_play_delays_the_body_by_its_width_after_a_reversal() -> None:
     field.command(PIVOT_A, 0.4, -1.0, 0.0)
     field.advance(1.0)
     assert estimator.carry(1.0).pose.heading == pytest.approx(0.02)
+
+
+@pytest.mark.parametrize("cut", [0.0, 0.010, 0.0249, 0.025, 0.0251, 0.040, 0.060])
+def test_a_pivot_switch_is_allowed_its_slip_wherever_the_frames_fall(cut: float) -> None:
+    field = FieldModel(0.05, 0.1)
+    field.start(0.0, 0.0, PIVOT_A, 0.4, 0.001)
+    field.advance(0.1)
+    estimator = Estimator(SETTINGS, field, LENGTH)
+    estimator.start(sighting(Pose(0.0, 0.0, 0.0), 0.1))
+    estimator.expect(0.11)
+    field.command(PIVOT_B, 0.4, 0.0, 0.0)
+    field.advance(0.3)
+    estimator.expect(0.11 + cut)
+    estimator.expect(0.25)
+    assert estimator.covariance[0, 0] > SETTINGS.slip**2
