@@ -67,6 +67,8 @@ class Walker:
         self.sweep = Sweep(gait.sweep, pivot, heading)
         self.stuck = 0
         self.is_finished = False
+        self.is_deciding = False
+        """The controller has been asked and has not answered yet; another thread may look."""
         self._length = length
         self._may_switch = True
         self._direction = 1.0
@@ -143,10 +145,13 @@ class Walker:
             workspace=moment.workspace,
             slip=moment.slip,
         )
+        self.is_deciding = True
         try:
             decision = self.controller.step(situation)
         except Exception as error:  # the boundary to code that anyone may have written
             raise ControllerFault(f"controller {self.controller.name!r} raised {error!r}") from error
+        finally:
+            self.is_deciding = False
         if (
             not isinstance(decision, Decision)
             or decision.pivot not in (1, -1)

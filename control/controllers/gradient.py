@@ -28,6 +28,8 @@ CONVERGED = 1e-4
 """The descent ends when a step is smaller than this, rad/s."""
 LARGEST_TURN = 0.5
 """Largest change of the turn over the look-ahead in one step of the descent, rad."""
+TINY = 1e-12
+"""Keeps the curvature away from zero where the desired point lies on the pivot, m^2."""
 FIRST_TURN = 0.2
 """The two directions of turning are tried from this far on either side of standing still, rad."""
 SHORT_OF_GOAL = 0.3
@@ -71,6 +73,12 @@ class Cost:
         along = self.half * sigma * (error_x * cosine + error_y * sine)
         return self.look_ahead * (along + self.weight * error_heading)
 
+    def distance_from_pivot(self, sigma: float) -> float:
+        """Of the desired point, m."""
+        half = self.half * sigma
+        x, y = self.x - half * math.sin(self.heading), self.y + half * math.cos(self.heading)
+        return math.hypot(x - self.desired_x, y - self.desired_y)
+
     def _errors(self, rate: float, sigma: float) -> tuple[float, float, float, float, float]:
         after = self.heading + rate * self.look_ahead
         sine, cosine = math.sin(after), math.cos(after)
@@ -87,10 +95,12 @@ class Cost:
 def descend(cost: Cost, sigma: float, rate: float, max_rate: float) -> float:
     """Follow -dJ/d omega from `rate` to rest, within the limits; rad/s.
 
-    The step is scaled by the Gauss-Newton curvature ((L/2)^2 + w L^2) tau^2, the same on either pivot.
+    With D the desired point's distance from the pivot, J = 1/2 ((L/2)^2 + D^2 - L D cos phi) along the arc, so its
+    curvature is at most ((L/2) D + w L^2) tau^2, and is that at the minimum: a step of the gradient over this
+    never climbs and converges like Newton's.
     """
     tau = cost.look_ahead
-    scale = 1.0 / ((cost.half**2 + cost.weight) * tau * tau)
+    scale = 1.0 / ((cost.half * cost.distance_from_pivot(sigma) + cost.weight + TINY) * tau * tau)
     largest = LARGEST_TURN / tau
     for _ in range(ITERATIONS):
         step = max(-largest, min(largest, scale * cost.by_rate(rate, sigma)))

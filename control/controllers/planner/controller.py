@@ -74,9 +74,8 @@ class Planner:
         if situation.may_switch:
             self._arrive(situation.pose)
             return self._plan(situation)
-        if self._leg is None:
-            return Decision(situation.pivot, 0.0)
-        return Decision(situation.pivot, self._rate(self._leg, situation), abs(self._leg.turn))
+        leg = self._leg or self._take_over(situation)
+        return Decision(situation.pivot, self._rate(leg, situation), abs(leg.turn))
 
     def _prepare(self, situation: Situation) -> None:
         """Tables for a gait that is new."""
@@ -125,6 +124,16 @@ class Planner:
         left = situation.pivot if move.switches else None
         self._leg = Leg(move.turn, rate, end, pose, left)
         return Decision(pivot, rate, abs(move.turn))
+
+    def _take_over(self, situation: Situation) -> Leg:
+        """Complete a sweep that another controller has begun, the way it goes."""
+        gait, pose, turned = situation.gait, situation.pose, situation.turned
+        turn = math.copysign(gait.sweep, turned or situation.pivot)
+        left = max(0.0, gait.sweep - abs(turned))
+        rate = SLOWEST * gait.max_rate
+        self._turned = turned
+        self._leg = Leg(turn, rate, situation.reference_time + left / rate, pose, None)
+        return self._leg
 
     def _root(self, situation: Situation) -> Root:
         pose = situation.pose
