@@ -18,6 +18,7 @@ from control.coils import CoilSet
 from control.controllers.manual import Jog, Manual
 from control.field_model import FieldModel
 from control.gait import Gait
+from control.gait_model import GaitModel
 from control.link.conversion import BoardState, LinkError, Telemetry
 from control.link.port import Link
 from control.metrics import Metrics
@@ -95,6 +96,8 @@ class Parts:
     limits: Limits
     length: float
     simulated: bool
+    gait_model: GaitModel
+    """What is known of a pivot switch before the run begins."""
     body_tilt: Callable[[float], float]
     """From the field's tilt to the body's, rad, for drawing."""
 
@@ -114,6 +117,7 @@ class ControlLoop:
         self._walk: Walk | None = None
         self._gait = Gait()
         self._manual = Manual()
+        self._outside = "estop", "emergency stop"
         self._tick = 0
         self._now = self._frame_at = now
         self._telemetry: Telemetry | None = None
@@ -130,6 +134,12 @@ class ControlLoop:
     def field_at(self, time: float) -> tuple[float, float]:
         """Heading (unwrapped) and elevation of the field at a recent rig time (s), rad."""
         return self._parts.field.heading_at(time), self._parts.field.elevation_at(time)
+
+    @property
+    def deciding(self) -> str:
+        """The controller that the running tick waits for, "" for none; from any thread."""
+        walk = self._walk
+        return walk.walker.controller.name if walk is not None and walk.walker.is_deciding else ""
 
     def take_announcements(self) -> list[Announcement]:
         """What happened since the last call, oldest first."""
@@ -159,14 +169,16 @@ class ControlLoop:
         self._end_run(RunState.ABORTED, reason)
         self._enter(state, reason, "info")
 
-    def estop(self) -> None:
+    def estop(self, code: str = "estop", reason: str = "emergency stop") -> None:
         """Zero now; from any thread. The state follows at the next tick, or at `latch_estop`."""
+        if not self._parts.actuation.stopped_from_outside:
+            self._outside = code, reason
         self._parts.actuation.stop_from_outside()
 
     def latch_estop(self) -> None:
         """Enter the fault state after an `estop`; keeps the first cause of a fault that is on already."""
         if self._state is not RigState.FAULT:
-            self._latch("estop", "emergency stop")
+            self._latch(*self._outside)
 
     def reset(self) -> None:
         """Leave the fault state, disarmed; a board that has latched a fault is greeted anew."""
@@ -185,6 +197,7 @@ class ControlLoop:
         walk = Walk(id, request, self._parts.length, self._parts.field.pivot, pose)
         check_inside(walk.trajectory, self._parts.coils.workspace)
         walk.workspace = self._parts.coils.workspace
+        walk.gait_model = self._parts.gait_model
         self._manual.forget()
         self._walk = walk
         self._gait = request.selection.gait
@@ -282,7 +295,7 @@ class ControlLoop:
         self._findings = assess(self._health(gap, now), self._parts.limits)
         self._remember_since(now)
         if self._parts.actuation.stopped_from_outside and self._state is not RigState.FAULT:
-            self._latch("estop", "emergency stop")
+            self._latch(*self._outside)
         if not self._findings:
             return
         worst = self._findings[0]

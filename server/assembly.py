@@ -12,6 +12,7 @@ from control.actuation import Actuation, ActuationSettings
 from control.coils import CoilPair, CoilSet
 from control.estimator import EstimatorSettings
 from control.field_model import FieldModel
+from control.gait_model import GaitModel
 from control.link.conversion import Configuration
 from control.link.port import Link
 from control.loop import Camera, ControlLoop, Parts
@@ -101,7 +102,20 @@ def _parts(
         limits=_limits(settings),
         length=length,
         simulated=simulated,
+        gait_model=_gait_model(settings),
         body_tilt=_body_tilt(settings.robot.lift_ratio),
+    )
+
+
+def _gait_model(settings: RigFile) -> GaitModel:
+    gait = settings.gait
+    return GaitModel(
+        length=settings.robot.length_mm * MM,
+        out=gait.out_mm * MM,
+        forward_base=gait.forward_base_mm * MM,
+        forward_per_sweep=gait.forward_per_sweep_mm_rad * MM,
+        switch_time=settings.link.ramp_ms * MS,
+        backlash=math.radians(settings.estimator.backlash_deg),
     )
 
 

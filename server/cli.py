@@ -36,6 +36,7 @@ from server.commands.outcome import (
     warn,
     with_simulation,
 )
+from server.commands.reproduce import reproduce
 from server.environment import check_environment
 from server.settings import RigFile, in_words
 from server.waypoint_import import with_points
@@ -49,6 +50,7 @@ app = typer.Typer(
 
 
 app.add_typer(calibrate.app, name="calibrate")
+app.command()(reproduce)
 
 
 def main() -> None:

@@ -37,6 +37,7 @@ from server.api.runs import run_json
 from server.assembly import Machine
 from server.settings import RigFile
 from server.streams import Publisher, announcer
+from server.watchdog import STALL, Hang, Watchdog, stopped
 from vision.calibration import CameraModel
 
 T = TypeVar("T")
@@ -62,6 +63,9 @@ class Rig:
         self._loop = machine.loop
         self._thread = ThreadPoolExecutor(max_workers=1, thread_name_prefix="rig")
         self._task: asyncio.Task[None] | None = None
+        self._watchdog = Watchdog(lambda: machine.loop.deciding)
+        self.hangs = False
+        """The loop's thread does not come back: what it was asked for will not happen."""
         self._trail: deque[tuple[float, float]] = deque(maxlen=TRAIL_POINTS)
         self.settings: RigFile = machine.settings
         self.simulated = machine.camera.simulated
@@ -121,13 +125,18 @@ class Rig:
 
     def _close(self) -> None:
         self._machine.camera.close()
-        self._thread.shutdown(wait=True)
+        self._thread.shutdown(wait=not self.hangs, cancel_futures=True)
         self._machine.close()
 
     async def _run(self) -> None:
         try:
             while True:
-                self.snapshot = await self._on_thread(self._one_tick)
+                tick = asyncio.get_running_loop().run_in_executor(self._thread, self._one_tick)
+                hang = await self._watchdog.wait(tick)
+                if hang is not None:
+                    self._hang(hang)
+                self.snapshot = await tick
+                self.hangs = False
                 self._tell()
         except asyncio.CancelledError:
             raise
@@ -142,6 +151,25 @@ class Rig:
         reason = f"the control loop failed ({error!r}); restart pivotrig"
         self.snapshot = replace(self.snapshot, rig=RigState.FAULT, reason=reason)
         self.updates.publish(self.snapshot)
+
+    def _hang(self, hang: Hang) -> None:
+        """The loop does not come back: zero current, and say so; a loop that does come back latches the same."""
+        self._loop.estop(hang.code, hang.reason)
+        log.error("%s", hang.reason)
+        self.hangs = True
+        if self.snapshot.run is not None:
+            self._end_hung_run(self.snapshot.run.id, hang.reason)
+        self.snapshot = stopped(self.snapshot, hang)
+        announcement = Announcement(self.snapshot.time, "error", hang.code, hang.reason)
+        self.events.append(announcement)
+        self.announcements.publish(_event_message(announcement))
+        self.updates.publish(self.snapshot)
+
+    def _end_hung_run(self, id: str, reason: str) -> None:
+        for index, run in enumerate(self.runs):
+            if run.id == id:
+                self.runs[index] = replace(run, state=RunState.ABORTED, reason=reason)
+                self._announce_run(RunState.ABORTED.value, self.runs[index])
 
     def _one_tick(self) -> Snapshot:
         frame = self._machine.camera.read(FRAME_TIMEOUT)
@@ -184,10 +212,21 @@ class Rig:
         """Carry a request out between two ticks and publish what became of it; raises `Refused`."""
         if self.failure is not None:
             raise Refused(self.snapshot.reason)
-        answer = await self._on_thread(request)
+        answer = await self._unless_it_hangs(request)
         self.snapshot = await self._on_thread(self._look_again)
         self._tell()
         return answer
+
+    async def _unless_it_hangs(self, request: Callable[[], T]) -> T:
+        """The answer of the rig's thread; raises `Refused` when that does not come back."""
+        if self.hangs:
+            raise Refused(self.snapshot.reason)
+        answer = asyncio.get_running_loop().run_in_executor(self._thread, request)
+        while not (await asyncio.wait({answer}, timeout=STALL))[0]:
+            if self.hangs:
+                answer.cancel()
+                raise Refused(self.snapshot.reason)
+        return answer.result()
 
     def _look_again(self) -> Snapshot:
         return self._loop.tick(None, self._machine.camera.now())

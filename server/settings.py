@@ -139,6 +139,20 @@ class EstimatorSection(Section):
     """First guess of the play between field and body; it is identified while walking."""
 
 
+Slip = Annotated[float, Field(ge=-10.0, le=10.0)]
+
+
+class GaitSection(Section):
+    """What a pivot switch does to this robot, from `pivotrig calibrate gait`; zero until that has been done."""
+
+    out_mm: Slip = 0.0
+    """The new pivot lands this far out of its place, along the body."""
+    forward_base_mm: Slip = 0.0
+    """It lands this far ahead in the direction of walking,"""
+    forward_per_sweep_mm_rad: Slip = 0.0
+    """and this much further for each radian of the sweep."""
+
+
 class SimulationSection(Section):
     """The simulated rig; only read where the camera or the port is simulated."""
 
@@ -167,6 +181,7 @@ class RigFile(Section):
     link: LinkSection = LinkSection()
     vision: VisionSection = VisionSection()
     estimator: EstimatorSection = EstimatorSection()
+    gait: GaitSection = GaitSection()
     simulation: SimulationSection = SimulationSection()
 
     @property

@@ -32,7 +32,7 @@ def test_each_run_of_the_readme_works(line: str) -> None:
 
 
 def test_the_script_of_the_readme_works(tmp_path: Path) -> None:
-    (script,) = blocks("python")
+    (script,) = (block for block in blocks("python") if "httpx" in block)
     with served(tmp_path, "--sim") as server:
         server.until(lambda state: state["tracking"] == "locked" and not state["faults"])
         here = script.replace("http://127.0.0.1:8000", server.address)

@@ -25,7 +25,7 @@ from server.commands.outcome import (
     read_rig_file,
     with_simulation,
 )
-from server.settings import MM, MS, RigFile, in_words
+from server.settings import MM, MS, GaitSection, RigFile, in_words
 
 app = typer.Typer(no_args_is_help=True, help="Measure a rig.")
 
@@ -134,4 +134,17 @@ def _in_words(result: dict[str, Any]) -> str:
     for name, figure in result["figures"].items():
         value = f"{figure['value']:.3f} ± {figure['standard_error']:.3f}"
         lines.append(f"{name:<25} {value:>17}   {_MEANING[name]}")
-    return "\n".join(lines)
+    return "\n".join([*lines, "", "for the rig file:", *_rig_file_lines(result["figures"])])
+
+
+def _rig_file_lines(figures: dict[str, dict[str, float]]) -> list[str]:
+    """What of the figures the rig file has a place for, as TOML."""
+    value = {name: round(figure["value"], 3) for name, figure in figures.items()}
+    return [
+        "[robot]",
+        f"length_mm = {value['length_mm']}",
+        "[estimator]",
+        f"backlash_deg = {max(0.0, value['backlash_deg'])}",
+        "[gait]",
+        *(f"{name} = {value[name]}" for name in GaitSection.model_fields),
+    ]

@@ -3,17 +3,22 @@
 import json
 import math
 from dataclasses import asdict
+from pathlib import Path
 
 import pytest
 from typer.testing import CliRunner
 
+from control.controllers import Decision, Situation, controllers
 from control.gait import Gait
 from control.gait_model import GaitModel
+from control.registry import Parameters
+from control.runs import Choice, RunRequest, Selection
 from control.simulation.slip import NO_SLIP, SLIP_TABLE, SlipParameters
 from server.assembly import build_machine
 from server.cli import app
 from server.gait_calibration import Star, calibrate_gait
-from server.settings import RigFile
+from server.headless import run_headless
+from server.settings import RigFile, load_rig_file
 
 LENGTH = 0.010
 TABLES = {"slip": SLIP_TABLE, "noslip": NO_SLIP}
@@ -68,6 +73,45 @@ def test_the_command_prints_each_figure_with_its_standard_error() -> None:
     assert result["figures"]["length_mm"]["value"] == pytest.approx(10.0, abs=0.1)
     assert all(figure["standard_error"] > 0.0 for figure in result["figures"].values())
     assert result["steps"] > 10
+
+
+def test_what_was_found_goes_into_the_rig_file_and_from_there_to_the_controller(tmp_path: Path) -> None:
+    star = ["calibrate", "gait", "--legs", "2", "--leg", "12", "--seed", "2"]
+    answer = CliRunner().invoke(app, star)
+    assert answer.exit_code == 0, answer.stderr
+    rig_file = tmp_path / "rig.toml"
+    rig_file.write_text(answer.stdout.split("for the rig file:\n")[1])
+    settings = load_rig_file(rig_file)
+    assert settings.robot.length_mm == pytest.approx(10.0, abs=0.1)
+    assert settings.gait.out_mm < -0.05
+    seen = situations_of(settings)
+    assert seen.slip is not None
+    assert seen.slip.out == pytest.approx(settings.gait.out_mm * 1e-3)
+    assert seen.slip.switch_time == pytest.approx(0.05)
+
+
+def situations_of(settings: RigFile) -> Situation:
+    """What a controller is told on this rig."""
+    told: list[Situation] = []
+
+    class Curious:
+        name = "curious"
+        title = summary = "looks"
+        Parameters = Parameters
+
+        def __init__(self, _: Parameters) -> None: ...
+
+        def step(self, situation: Situation) -> Decision:
+            told.append(situation)
+            return Decision(situation.pivot, 0.0, finished=True)
+
+    controllers.register(Curious)
+    try:
+        request = RunRequest(Selection(Choice("curious")))
+        run_headless(build_machine(settings, realtime=False), "curious", request)
+    finally:
+        controllers.forget("curious")
+    return told[-1]
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,1 @@
+"""What the program writes for people: the paper's results, ours beside them."""

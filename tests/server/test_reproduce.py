@@ -1,0 +1,87 @@
+"""`pivotrig reproduce`: the report is written, whole and honest."""
+
+import csv
+import json
+import re
+import time
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from server.cli import app
+from server.reports import findings
+from server.reports.findings import PAPER_STEPS, Verdict
+from server.reports.simulation import GB, GB_BEST, OB, PLANNER, PLANNER_EARLY, Case, Simulation, run
+
+PICTURES = ("paths", "steps", "travel", "eights", "errors", "choices")
+
+
+@pytest.fixture(scope="module")
+def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder of a report, made within the time that is promised."""
+    folder = tmp_path_factory.mktemp("reproduction")
+    began = time.monotonic()
+    answer = CliRunner().invoke(app, ["reproduce", "--out", str(folder), "--json"])
+    assert answer.exit_code == 0, answer.stderr
+    assert time.monotonic() - began < 120.0
+    assert json.loads(answer.stdout)["report"] == str(folder / "report.html")
+    return folder
+
+
+def rows(path: Path) -> list[dict[str, str]]:
+    with path.open() as file:
+        return list(csv.DictReader(file))
+
+
+def test_the_page_stands_alone(report: Path) -> None:
+    page = (report / "report.html").read_text()
+    assert page.count("data:image/png;base64,") == len(PICTURES)
+    assert not re.search(r"""(src|href)=["'](?!data:)""", page)
+    assert "http" not in page
+
+
+def test_each_figure_is_a_picture_of_its_own_too(report: Path) -> None:
+    for name in PICTURES:
+        content = (report / f"{name}.png").read_bytes()
+        assert content.startswith(b"\x89PNG")
+        assert len(content) > 10_000
+
+
+def test_the_papers_counts_stand_beside_ours(report: Path) -> None:
+    cases = {(row["controller"], int(row["sweep_deg"])): row for row in rows(report / "simulation_cases.csv")}
+    for key, paper in PAPER_STEPS.items():
+        assert int(cases[key]["steps_paper"]) == paper
+        assert int(cases[key]["steps"]) == pytest.approx(paper, rel=0.10)
+    for sweep_deg, sweeps in ((10, 437), (30, 167)):
+        error = {name: float(cases[name, sweep_deg]["mean_error_mm"]) for name in (GB, GB_BEST, OB, PLANNER)}
+        assert error[PLANNER] < error[OB] < error[GB_BEST] <= error[GB]
+        assert int(cases[PLANNER, sweep_deg]["sweeps"]) <= 1.3 * sweeps
+        assert float(cases[PLANNER_EARLY, sweep_deg]["mean_error_mm"]) < error[PLANNER]
+
+
+def test_the_error_curves_have_a_row_a_tick(report: Path) -> None:
+    curves = rows(report / "simulation_errors.csv")
+    assert len(curves) == 1258
+    assert [curves[index]["time_s"] for index in (0, 1, -1)] == ["0.0", "0.1", "125.7"]
+
+
+def test_every_statement_has_a_verdict_and_what_cannot_be_compared_says_so(report: Path) -> None:
+    found = rows(report / "findings.csv")
+    assert {row["verdict"] for row in found} <= {verdict.value for verdict in Verdict}
+    assert all(row["note"] for row in found if row["verdict"] == Verdict.NOT_COMPARABLE.value)
+    page = (report / "report.html").read_text()
+    assert page.count('class="reproduced"') == sum(row["verdict"] == "reproduced" for row in found)
+
+
+def test_a_count_that_is_off_is_called_not_reproduced() -> None:
+    case = Case(GB, "geometric", 10, {"gain": 12.0})
+    off = Simulation((run(case),), (), (), ())
+    assert findings.of_steps(off, GB, 10).verdict is Verdict.NOT_REPRODUCED
+
+
+def test_a_folder_that_cannot_be_made_is_explained(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    answer = CliRunner().invoke(app, ["reproduce", "--out", str(tmp_path / "file" / "report")])
+    assert answer.exit_code == 1
+    assert "cannot be written" in " ".join(answer.stderr.split())
