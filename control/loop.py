@@ -10,96 +10,25 @@ from __future__ import annotations
 import math
 from collections import deque
 from collections.abc import Callable
-from dataclasses import dataclass, replace
-from typing import Protocol
+from dataclasses import replace
 
-from control.actuation import Actuation
-from control.coils import CoilSet
 from control.controllers.manual import Jog, Manual
-from control.field_model import FieldModel
 from control.gait import Gait
-from control.gait_model import GaitModel
-from control.link.conversion import BoardState, LinkError, Telemetry
-from control.link.port import Link
-from control.metrics import Metrics
+from control.link.conversion import LinkError
 from control.model import PIVOT_A, Frame, Pivot, Pose, Tracking
-from control.perception import Perception
+from control.news import Announcement, Ended
+from control.parts import Parts
 from control.runs import RunRequest, RunState, Selection
-from control.safety import (
-    ENERGISED,
-    Event,
-    Finding,
-    Health,
-    Limits,
-    Refused,
-    Severity,
-    after,
-    assess,
-    check_gait,
-)
+from control.safety import ENERGISED, Event, Finding, Refused, Severity, after, check_gait
 from control.snapshot import ZERO, Fault, RigState, Snapshot, Vector
 from control.timing import TimingLog
 from control.trajectories import check_inside
+from control.vitals import Vitals
 from control.walk import Walk
 from control.walker import ControllerFault, Stride
 
-MISMATCH_SHARE = 0.15
-"""Sensed and commanded current may differ by this share of the limit: the sense is off by up to 25 % of a
-small current, and the coils lag behind a ramp (firmware-notes.md)."""
 LOG_LENGTH = 200
 """Announcements that wait for the shell to take them."""
-
-
-class Camera(Protocol):
-    """A source of frames; stamps them with the clock that `now` reads."""
-
-    simulated: bool
-    size: tuple[int, int]
-    rate: float
-
-    def read(self, timeout: float) -> Frame | None: ...
-
-    def now(self) -> float: ...
-
-    def close(self) -> None: ...
-
-
-@dataclass(frozen=True, slots=True)
-class Announcement:
-    """One line of the event log. severity: "info", "warn" or "error".  time: rig time, s."""
-
-    time: float
-    severity: str
-    code: str
-    message: str
-
-
-@dataclass(frozen=True, slots=True)
-class Ended:
-    """How a run ended."""
-
-    id: str
-    state: RunState
-    reason: str
-    metrics: Metrics
-
-
-@dataclass(frozen=True, slots=True)
-class Parts:
-    """What the loop is made of; `server.assembly` builds it from the rig file."""
-
-    perception: Perception
-    actuation: Actuation
-    field: FieldModel
-    link: Link
-    coils: CoilSet
-    limits: Limits
-    length: float
-    simulated: bool
-    gait_model: GaitModel
-    """What is known of a pivot switch before the run begins."""
-    body_tilt: Callable[[float], float]
-    """From the field's tilt to the body's, rad, for drawing."""
 
 
 class ControlLoop:
@@ -111,17 +40,14 @@ class ControlLoop:
         self._timing = TimingLog(stopwatch)
         self._state = RigState.DISARMED
         self._reason = "ready to arm"
-        self._findings: tuple[Finding, ...] = ()
-        self._since: dict[str, float] = {}
+        self._vitals = Vitals(parts, now)
         self._latched: Fault | None = None
         self._walk: Walk | None = None
         self._gait = Gait()
         self._manual = Manual()
         self._outside = "estop", "emergency stop"
         self._tick = 0
-        self._now = self._frame_at = now
-        self._telemetry: Telemetry | None = None
-        self._agreed_at = self._driving_at = now
+        self._now = now
         self._pose: Pose | None = None
         self._sigma: Vector = ZERO
         self._log: deque[Announcement] = deque(maxlen=LOG_LENGTH)
@@ -183,7 +109,7 @@ class ControlLoop:
     def reset(self) -> None:
         """Leave the fault state, disarmed; a board that has latched a fault is greeted anew."""
         state = after(self._state, Event.RESET)
-        if self._telemetry is not None and self._telemetry.faults:
+        if self._vitals.telemetry is not None and self._vitals.telemetry.faults:
             self._parts.link.greet()
         self._parts.actuation.allow()
         self._latched = None
@@ -254,10 +180,10 @@ class ControlLoop:
         gap, self._now = now - self._now, now
         self._tick += 1
         self._parts.field.advance(now)
-        self._hear(now)
+        self._vitals.hear(now, self._state)
         if frame is not None:
             self._timing.frame_in(frame.index)
-            self._frame_at = now
+            self._vitals.frame_came(now)
             self._parts.perception.look(frame)
         self._pose, self._sigma = self._parts.perception.pose_at(now)
         self._judge(gap, now)
@@ -267,66 +193,19 @@ class ControlLoop:
             self._timing.bytes_out()
         return self._snapshot()
 
-    def _hear(self, now: float) -> None:
-        telemetry = self._parts.link.poll()
-        if telemetry is None:
-            return
-        if self._telemetry is not None and telemetry.boot_id != self._telemetry.boot_id:
-            self._parts.field.forget_clock()
-        self._telemetry = telemetry
-        self._parts.field.synchronise(telemetry.board_time, telemetry.received_at, telemetry.heading)
-        if telemetry.state is BoardState.DRIVING or self._state not in ENERGISED:
-            self._driving_at = now
-        if self._currents_agree(telemetry):
-            self._agreed_at = now
-
-    @property
-    def _is_engaged(self) -> bool:
-        """Driving, or holding a run or a place that may be resumed."""
-        return self._state in ENERGISED or self._state is RigState.HELD
-
-    def _currents_agree(self, telemetry: Telemetry) -> bool:
-        pairs = zip(telemetry.currents, telemetry.measured_currents, self._parts.limits.currents, strict=True)
-        return all(
-            abs(abs(wanted) - abs(sensed)) <= MISMATCH_SHARE * limit for wanted, sensed, limit in pairs
-        )
-
     def _judge(self, gap: float, now: float) -> None:
-        self._findings = assess(self._health(gap, now), self._parts.limits)
-        self._remember_since(now)
+        findings = self._vitals.judge(gap, now, self._state, self._pose)
         if self._parts.actuation.stopped_from_outside and self._state is not RigState.FAULT:
             self._latch(*self._outside)
-        if not self._findings:
+        if not findings:
             return
-        worst = self._findings[0]
+        worst = findings[0]
         if worst.severity is Severity.LATCH and self._state is not RigState.FAULT:
             self._latch(worst.code, worst.message)
         elif worst.severity is Severity.DISARM and self._state in ENERGISED | {RigState.HELD}:
             self._lose(worst)
         elif worst.severity is Severity.HOLD and self._state in ENERGISED:
             self._hold(worst.message, "error", worst.code)
-
-    def _health(self, gap: float, now: float) -> Health:
-        perception, link, telemetry = self._parts.perception, self._parts.link, self._telemetry
-        frame = perception.frame
-        heard_at = telemetry.received_at if telemetry is not None else now
-        return Health(
-            tick_gap=gap,
-            frame_age=now - self._frame_at if frame is not None else math.inf,
-            frame_delay=self._frame_at - frame.captured_at if frame is not None else math.inf,
-            identical_frames=perception.identical_frames,
-            tracking=perception.tracking,
-            tracking_age=perception.age,
-            pose=self._pose,
-            link_ready=link.is_ready,
-            link_reason=link.reason,
-            link_incident=link.incident if self._is_engaged and telemetry is not None else "",
-            telemetry_age=now - telemetry.received_at if telemetry is not None else math.inf,
-            board_faults=telemetry.faults if telemetry is not None else (),
-            not_driving=heard_at - self._driving_at if self._state in ENERGISED else 0.0,
-            board_state=telemetry.state.value if telemetry is not None else "",
-            current_mismatch=heard_at - self._agreed_at if self._state in ENERGISED else 0.0,
-        )
 
     def _drive(self, now: float, gap: float) -> None:
         pose = self._pose
@@ -337,10 +216,10 @@ class ControlLoop:
             self._parts.actuation.drive(self._driven_by(now), stride, pose, self._gait)
         except ControllerFault as fault:
             self._latch("controller", str(fault))
-        except ValueError as error:
-            self._latch("command", f"the field cannot be commanded: {error}")
         except LinkError as error:
             self._lose(Finding(Severity.DISARM, "link", str(error)))
+        except Exception as error:  # noqa: BLE001 (a path may be anyone's code; whatever it is, no current)
+            self._latch("command", f"no command could be worked out: {error!r}")
         if self._walk is not None and self._state is RigState.RUNNING and self._walk.is_over:
             self._end_run(RunState.FINISHED, "")
             self._enter(after(self._state, Event.FINISH), "run finished", "info")
@@ -367,21 +246,16 @@ class ControlLoop:
 
     def _require_fit(self) -> Pose:
         """The pose, when nothing forbids current; raises `Refused` with the reason."""
-        for finding in self._findings:
-            if finding.severity >= Severity.HOLD:
-                raise Refused(finding.message)
+        self._vitals.require_none(self._state)
         if self._pose is None or self._parts.perception.tracking is not Tracking.LOCKED:
             raise Refused("the robot is not seen; put it in the camera's view and wait for a lock")
-        for finding in self._findings:
-            if finding.code == "margin" and self._state is RigState.DISARMED:
-                raise Refused(f"{finding.message}; move it towards the centre first")
         return self._pose
 
     def _energise(self) -> None:
         pose = self._require_fit()
         if self._parts.actuation.stopped_from_outside:
             raise Refused("stopped; reset it first")
-        self._agreed_at = self._driving_at = self._now
+        self._vitals.energised(self._now)
         try:
             self._parts.actuation.start(self._now, pose, self._standing_on(), self._gait)
         except LinkError as error:
@@ -419,13 +293,10 @@ class ControlLoop:
         self._state, self._reason = state, reason
         self._log.append(Announcement(self._now, severity, code or state.value, reason))
 
-    def _remember_since(self, now: float) -> None:
-        self._since = {finding.code: self._since.get(finding.code, now) for finding in self._findings}
-
     # What everybody may see ----------------------------------------------------------------------
 
     def _snapshot(self) -> Snapshot:
-        parts, telemetry, walk, pose = self._parts, self._telemetry, self._walk, self._pose
+        parts, telemetry, walk, pose = self._parts, self._vitals.telemetry, self._walk, self._pose
         currents = telemetry.currents if telemetry is not None else ZERO
         reference = walk.reference if walk is not None else None
         return Snapshot(
@@ -434,7 +305,7 @@ class ControlLoop:
             captured_at=parts.perception.frame.captured_at if parts.perception.frame is not None else None,
             rig=self._state,
             reason=self._why(),
-            faults=self._faults(),
+            faults=self._vitals.faults(self._latched),
             simulated=parts.simulated,
             pose=pose,
             pose_sigma=self._sigma,
@@ -456,14 +327,6 @@ class ControlLoop:
             link=parts.link.status,
         )
 
-    def _faults(self) -> tuple[Fault, ...]:
-        """The latched cause first, then everything that is wrong now, most severe first."""
-        latched = self._latched
-        current = (Fault(f.code, f.message, self._since[f.code]) for f in self._findings)
-        others = tuple(fault for fault in current if latched is None or fault.code != latched.code)
-        return others if latched is None else (latched, *others)
-
     def _why(self) -> str:
         """The reason of the state; while disarmed, what stands in the way of arming."""
-        blocking = (finding.message for finding in self._findings if finding.severity >= Severity.HOLD)
-        return next(blocking, self._reason) if self._state is RigState.DISARMED else self._reason
+        return self._vitals.blocking or self._reason if self._state is RigState.DISARMED else self._reason

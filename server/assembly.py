@@ -15,8 +15,9 @@ from control.field_model import FieldModel
 from control.gait_model import GaitModel
 from control.link.conversion import Configuration
 from control.link.port import Link
-from control.loop import Camera, ControlLoop, Parts
+from control.loop import ControlLoop
 from control.model import Pose, body_tilt
+from control.parts import Camera, Parts
 from control.perception import Perception
 from control.safety import Limits
 from control.simulation.board import TwinBoard, Winding

@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from control.loop import Ended
+from control.news import Ended
 from control.runs import RunRequest, RunState
 from control.safety import Refused
 from control.snapshot import RigState, Snapshot

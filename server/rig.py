@@ -23,8 +23,8 @@ from numpy.typing import NDArray
 
 from control.coils import CoilSet
 from control.controllers.manual import Jog
-from control.loop import Announcement, Ended
 from control.model import Frame
+from control.news import Announcement, Ended
 from control.runs import Choice, Run, RunRequest, RunState, Selection
 from control.safety import Refused
 from control.snapshot import RigState, Snapshot

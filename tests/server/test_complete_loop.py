@@ -15,7 +15,7 @@ from control.safety import Refused
 from control.simulation.board import TwinBoard
 from control.simulation.world import World
 from control.snapshot import RigState, Snapshot
-from control.trajectories import OutsideWorkspace
+from control.trajectories import Circle, OutsideWorkspace, trajectories
 from server.assembly import Machine, build_machine
 from server.headless import run_headless
 from server.settings import RigFile
@@ -358,6 +358,30 @@ def test_a_controller_that_returns_nonsense_latches_with_zero_current(bench: Ben
     bench.loop.start("a run", RunRequest(Selection(Choice(Broken.name), Choice("eight"), GAIT)))
     snapshot = bench.until(lambda snapshot: snapshot.rig is RigState.FAULT, within=4.0)
     assert "broken after a second" in snapshot.reason
+    bench.expect_no_current()
+
+
+class Cracked(Circle):
+    """A path that fails half-way."""
+
+    name = "cracked"
+
+    def point(self, time: float) -> tuple[float, float]:
+        if time > 1.0 and self.is_walked:
+            raise ZeroDivisionError("cracked")
+        return super().point(time)
+
+    is_walked = False
+
+
+def test_a_path_that_raises_latches_with_zero_current(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
+    if Cracked.name not in trajectories:
+        trajectories.register(Cracked)
+    bench.arm()
+    bench.loop.start("a run", RunRequest(Selection(Choice("geometric"), Choice(Cracked.name), GAIT)))
+    monkeypatch.setattr(Cracked, "is_walked", True)
+    snapshot = bench.until(lambda snapshot: snapshot.rig is RigState.FAULT, within=4.0)
+    assert "cracked" in snapshot.reason
     bench.expect_no_current()
 
 

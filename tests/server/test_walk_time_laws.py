@@ -7,7 +7,7 @@ import pytest
 from typer.testing import CliRunner
 
 from control.gait import Gait, TimeLaw
-from control.loop import Ended
+from control.news import Ended
 from control.runs import Choice, RunRequest, Selection
 from control.snapshot import Snapshot
 from server.assembly import build_machine
