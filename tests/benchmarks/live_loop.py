@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import asyncio
+import tempfile
 import time
+from pathlib import Path
 
-from tests.benchmarks.served import get, post, served, with_one_dashboard
+from tests.benchmarks.clients import with_one_dashboard
+from tests.processes import Server, served
 
-WALK = 20.0
-"""Seconds; twice what the loop's own figures look back on."""
+WALK = 12.0
+"""Seconds; a little more than the loop's own figures look back on."""
 
 
 def report() -> None:
@@ -16,28 +19,17 @@ def report() -> None:
     print(
         f"{'clients':24} {'rate Hz':>8} {'period p99':>11} {'latency p50':>12} {'latency p99':>12} {'dropped':>8}"
     )
-    with served() as address:
-        _start_walking(address)
-        time.sleep(0.6 * WALK)
-        alone = _row("none (reference)", address)
-        asyncio.run(with_one_dashboard(address, 0.6 * WALK))
-        watched = _row("one dashboard", address)
+    with tempfile.TemporaryDirectory() as data, served(Path(data), "--sim") as server:
+        server.start_walking()
+        time.sleep(WALK)
+        alone = _row("none (reference)", server)
+        asyncio.run(with_one_dashboard(server.address, WALK))
+        watched = _row("one dashboard", server)
     print(f"p99 with a dashboard over p99 without: {watched / alone:.2f}")
 
 
-def _start_walking(address: str) -> None:
-    until = time.monotonic() + 20.0
-    while get(address, "/state")["tracking"] != "locked":
-        if time.monotonic() > until:
-            raise RuntimeError("the robot was not found")
-        time.sleep(0.1)
-    time.sleep(0.5)
-    post(address, "/arm")
-    post(address, "/runs", {"gait": {"sweep_deg": 10.0}})
-
-
-def _row(name: str, address: str) -> float:
-    loop = get(address, "/state")["loop"]
+def _row(name: str, server: Server) -> float:
+    loop = server.get("/state")["loop"]
     print(
         f"{name:24} {loop['rate_Hz']:8.2f} {loop['period_p99_ms']:8.2f} ms {loop['latency_p50_ms']:9.2f} ms "
         f"{loop['latency_p99_ms']:9.2f} ms {loop['dropped_frames']:8d}"
