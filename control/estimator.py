@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from control.backlash import ENGAGED_AFTER
 from control.field_model import FieldModel, Turn
+from control.gait_model import GaitModel
 from control.model import PIVOT_A, PIVOT_B, Expectation, Measurement, Pivot, Pose, body_tilt, swing, wrap
 from control.snapshot import Vector
 
@@ -35,6 +36,7 @@ class EstimatorSettings:
     surely pulls the body along.  loose: the same while it may still be taking up the play after a reversal.
     actuation_delay: from a field command to the body's answer, s (serial line and coil currents).
     lift_ratio: 2 m B / (W L) at 10 mT, how far the free end rises (`control.model.body_tilt`).
+    gait_model: the mean displacement of a pivot switch, where it has been measured.
     """
 
     measured_position: float = 0.00004
@@ -48,6 +50,7 @@ class EstimatorSettings:
     loose: float = 0.6
     actuation_delay: float = 0.001
     lift_ratio: float = 3.2
+    gait_model: GaitModel | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,11 +68,13 @@ class Grip:
     slack: where the body lies within the play, rad, within +- half of it.
     pull: how far the field has turned since it last reversed, rad, signed.
     pivot: the end it presses down; None before the first motion.
+    turned: how far the body has turned about that end since it took it, rad, signed.
     """
 
     slack: float = 0.0
     pull: float = 0.0
     pivot: Pivot | None = None
+    turned: float = 0.0
 
     @property
     def is_tight(self) -> bool:
@@ -80,7 +85,8 @@ class Grip:
         """The grip once the field has made this turn."""
         slack = max(-half_play, min(half_play, self.slack + turn.angle))
         pull = turn.angle if turn.angle * self.pull < 0.0 else self.pull + turn.angle
-        return Grip(slack, pull, turn.pivot)
+        follows = turn.angle + self.slack - slack
+        return Grip(slack, pull, turn.pivot, follows + (self.turned if turn.pivot == self.pivot else 0.0))
 
 
 class PivotFilter(ExtendedKalmanFilter):
@@ -199,13 +205,19 @@ class Estimator:
         arrival, noise = departure, _Noise(self._settings, end - start, self._field.is_ready)
         for turn in self._field.turns(start - delay, end - delay):
             held = grip.after(turn, self.half_play)
+            if grip.pivot not in (None, turn.pivot):
+                arrival = self._landed(arrival, grip)
+                noise.switch()
             arrival = swing(arrival, turn.pivot, turn.angle + grip.slack - held.slack, self._length)
             noise.turn(turn.angle, held.is_tight)
-            if grip.pivot not in (None, turn.pivot):
-                noise.switch()
             grip = held
         dx, dy = arrival.x - departure.x, arrival.y - departure.y
         return Motion(arrival, grip, dx, dy, noise.position, noise.heading)
+
+    def _landed(self, pose: Pose, grip: Grip) -> Pose:
+        """What the switch away from the grip's pivot does on average, where that has been measured."""
+        model = self._settings.gait_model
+        return pose if model is None or grip.pivot is None else model.landed(pose, grip.pivot, grip.turned)
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,7 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+
+from control.model import Pivot, Pose
+
+LARGEST_TURN = math.radians(40.0)
+"""A longer turn about one pivot slips no further (physics.md: fitted to sweeps up to here), rad."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,4 +51,15 @@ class GaitModel:
 
     def forward(self, turn: float) -> float:
         """How far the new pivot lands in the walking direction after `turn` (rad) about the old one, m."""
-        return self.forward_base + self.forward_per_sweep * abs(turn)
+        return self.forward_base + self.forward_per_sweep * min(abs(turn), LARGEST_TURN)
+
+    def landed(self, pose: Pose, left: Pivot, turn: float) -> Pose:
+        """The pose once the other pivot has been taken, after `turn` (rad) about the pivot `left`.
+
+        Walking is forward when the pivot's sign and the turn's agree.
+        """
+        forward = left * math.copysign(self.forward(turn), turn) if turn else 0.0
+        cosine, sine, out = math.cos(pose.heading), math.sin(pose.heading), left * self.out
+        return Pose(
+            pose.x + forward * cosine + out * sine, pose.y + forward * sine - out * cosine, pose.heading
+        )

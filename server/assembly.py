@@ -243,6 +243,7 @@ def _estimator(settings: RigFile) -> EstimatorSettings:
         loose=estimator.loose_share,
         actuation_delay=estimator.actuation_delay_ms * MS,
         lift_ratio=settings.robot.lift_ratio,
+        gait_model=_gait_model(settings),
     )
 
 

@@ -18,7 +18,7 @@ from control.snapshot import RigState, Snapshot
 from control.trajectories import Circle, OutsideWorkspace, trajectories
 from server.assembly import Machine, build_machine
 from server.headless import run_headless
-from server.settings import RigFile
+from server.settings import GaitSection, RigFile
 from vision.synthetic import Disturbance, SyntheticCamera
 
 GAIT = Gait(sweep=math.radians(10.0), tilt=math.radians(25.0))
@@ -99,9 +99,12 @@ def bench() -> Iterator[Bench]:
     machine.close()
 
 
-def error_figures(plant: str, duration: float) -> tuple[np.ndarray, np.ndarray]:
+def error_figures(
+    plant: str, duration: float, gait: GaitSection | None = None
+) -> tuple[np.ndarray, np.ndarray]:
     """Errors (mm, deg) of estimate and of newest sighting against the truth now, while locked."""
-    machine = build_machine(RigFile().with_simulation(plant=plant, seed=1), realtime=False)
+    rig_file = RigFile(gait=gait or GaitSection()).with_simulation(plant=plant, seed=1)
+    machine = build_machine(rig_file, realtime=False)
     estimates, sightings = [], []
 
     def watch(snapshot: Snapshot) -> None:
@@ -133,6 +136,15 @@ def test_the_estimate_knows_where_the_robot_is_now_although_the_camera_is_late(
     assert median[1] <= 0.5
     rms, rms_of_sightings = (np.sqrt((errors**2).mean(axis=0)) for errors in (estimates, sightings))
     assert (rms < rms_of_sightings).all()
+
+
+def test_a_calibrated_gait_makes_the_estimate_better() -> None:
+    table_at_25_deg = GaitSection(out_mm=-0.148, forward_base_mm=0.107, forward_per_sweep_mm_rad=0.419)
+    rms = [
+        np.sqrt((error_figures("slip", 20.0, gait)[0] ** 2).mean(axis=0))[0]
+        for gait in (None, table_at_25_deg)
+    ]
+    assert rms[1] < 0.8 * rms[0]
 
 
 def test_arming_brings_the_field_up_without_turning_the_robot(bench: Bench) -> None:

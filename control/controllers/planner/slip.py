@@ -9,10 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from control.controllers.planner.moves import Complex, Float
+from control.gait_model import LARGEST_TURN
 from control.model import Pivot, Pose, opposite, swing
 
-LARGEST_TURN = math.radians(40.0)
-"""A longer turn about one pivot slips no further (physics.md: fitted to sweeps up to here), rad."""
 FIRST_WEIGHT = 4.0
 """The model's word counts like this many sightings."""
 LEAST_GAIN = 0.05
