@@ -59,10 +59,21 @@ class Server:
         return poll(lambda: self.get("/state"), condition)
 
     def start_walking(self) -> None:
-        self.until(lambda state: state["tracking"] == "locked" and not state["faults"])
-        self.post("/arm")
-        self.post("/runs", {"gait": {"sweep_deg": 10.0}})
+        """As a person would: once more when a busy machine has made the rig let go."""
+        poll(self._try_to_start, bool)
         self.until(lambda state: state["run"] is not None and state["run"]["elapsed_s"] > 0.5)
+
+    def _try_to_start(self) -> bool:
+        state = self.until(lambda state: state["tracking"] == "locked")
+        try:
+            if state["rig"] == "fault":
+                self.post("/reset")
+            if state["rig"] in ("fault", "disarmed"):
+                self.post("/arm")
+            self.post("/runs", {"gait": {"sweep_deg": 10.0}})
+        except ServerRefused:
+            return False
+        return True
 
 
 def poll(ask: Callable[[], T], condition: Callable[[T], bool]) -> T:

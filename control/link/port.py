@@ -17,8 +17,9 @@ from control.link.conversion import Configuration, DriveCommand, LinkError, Tele
 from control.link.session import LinkState, Session
 from control.snapshot import LinkStatus
 
-WRITE_TIMEOUT = 0.01
-"""A port that takes no bytes for so long is jammed, s; less than a frame of the camera."""
+WRITE_TIMEOUT = 0.03
+"""A port that takes no bytes for so long is jammed, s: two frames, once. Shorter, and pyserial, which looks at the
+clock only after it has written, would call a port jammed when the computer was busy for that long."""
 
 LAST_WORDS = 0.02
 """How long a closing port may take to send what it was given, the stop above all, s."""
