@@ -36,7 +36,8 @@ bench: .stamps/dev ## measure, against a reference in the same run
 	$(BIN)/python -m tests.benchmarks
 
 browser:
-	@bash .ci/need chromium chromium
+	@bash .ci/need --program chromium chromium
+	@bash .ci/need --library libatomic.so.1 libatomic1
 
 .stamps/run: pyproject.toml uv.lock
 	@bash .ci/environment --no-dev
