@@ -8,6 +8,12 @@ import time
 from collections.abc import Iterator
 
 import pytest
+from hypothesis import settings
+
+settings.register_profile("ci", derandomize=True)
+if os.environ.get("CI") == "true":
+    settings.load_profile("ci")
+"""What decides whether a change lands tries the same examples each time; everywhere else they are new ones."""
 
 GRACE = 2.0
 """A thread that is ending may take this long, s."""
