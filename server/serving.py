@@ -19,14 +19,13 @@ import uvicorn
 from control.link.conversion import LinkError
 from server.app import create_app, end_streams
 from server.assembly import Machine, build_machine
+from server.door import MESSAGE_LIMIT
 from server.rig import Rig
 from server.settings import RigFile
 from vision.cameras import CameraError
 
 GRACE = 2
 """Seconds that open streams get at shutdown; the coils are zero long before."""
-LARGEST_MESSAGE = 65_536
-"""Bytes in one WebSocket message from a client."""
 
 
 TURN = 0.0002
@@ -78,7 +77,7 @@ class _Server(uvicorn.Server):
             log_level="warning",
             access_log=False,
             ws_per_message_deflate=False,
-            ws_max_size=LARGEST_MESSAGE,
+            ws_max_size=MESSAGE_LIMIT,
             timeout_graceful_shutdown=GRACE,
             server_header=False,
         )

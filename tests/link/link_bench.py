@@ -8,22 +8,11 @@ from contextlib import contextmanager
 from dataclasses import replace
 from itertools import count
 
-from control.link.conversion import Configuration, DriveCommand, Telemetry
+from control.link.conversion import DriveCommand, Telemetry
 from control.link.port import Link
 from control.simulation.board import TwinBoard, Winding
+from tests.paper_board import CONFIGURATION
 
-CONFIGURATION = Configuration(
-    current_limits=(8.0, 8.0, 8.0),
-    dead_man=0.2,
-    ramp=0.05,
-    field_slew=0.010 / 0.3,
-    resistances=(2.5, 2.0, 1.5),
-    inductances=(0.125, 0.055, 0.014),
-    supply=24.0,
-    max_field=0.02,
-    max_rate=2.0,
-    max_tilt=math.radians(60.0),
-)
 ALLOCATION = ((800.0, 0.0, 0.0), (0.0, 800.0, 0.0), (0.0, 0.0, 800.0))
 COMMAND = DriveCommand(1, 0.0, 0.0, math.radians(25.0), 0.010, ALLOCATION, 0.12)
 TICK = 16

@@ -2,27 +2,15 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 from typing import Any
 
 from control.link import wire
-from control.link.conversion import Configuration, configure_message, phase, phase_rate
+from control.link.conversion import configure_message, phase, phase_rate
 from control.link.messages import ARM, Banner, Drive, Hello, Message, Stop, Telemetry
 from control.simulation.board import TwinBoard, Winding
+from tests.paper_board import CONFIGURATION
 
-CONFIGURATION = Configuration(
-    current_limits=(8.0, 8.0, 8.0),
-    dead_man=0.2,
-    ramp=0.05,
-    field_slew=0.010 / 0.3,
-    resistances=(2.5, 2.0, 1.5),
-    inductances=(0.125, 0.055, 0.014),
-    supply=24.0,
-    max_field=0.02,
-    max_rate=2.0,
-    max_tilt=math.radians(60.0),
-)
 CONFIGURE = configure_message(CONFIGURATION)
 ONE = 13107  # 0.8 mA/uT in Q14: 8 A for 10 mT
 TILT = round(25.0 / 360.0 * 65536)
