@@ -3,7 +3,7 @@ SHELL := /bin/bash
 BIN := .venv/bin
 JOBS ?= 2
 
-.PHONY: run setup test test-full lint format bench clean browser help
+.PHONY: run setup test test-full lint format bench safety clean browser help
 
 help: ## show this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | expand -t 14
@@ -31,6 +31,9 @@ lint: .stamps/dev ## style, types and the folder rules
 format: .stamps/dev ## put the code into its layout
 	$(BIN)/ruff check --fix .
 	$(BIN)/ruff format .
+
+safety: .stamps/dev ## try every fault out and write the table of reaction times
+	$(BIN)/python -m tests.faults.table
 
 bench: .stamps/dev ## measure, against a reference in the same run
 	$(BIN)/python -m tests.benchmarks

@@ -21,6 +21,7 @@ from scipy.spatial.transform import Rotation
 
 from control.field_map import FieldMap, PlaneElements
 from control.model import Pivot
+from control.registration import COINCIDENT, Registration
 from control.snapshot import Vector
 
 Matrix = tuple[Vector, Vector, Vector]
@@ -63,6 +64,7 @@ class CoilPair:
 
     diameter, separation: m.  turns: of each of the two coils.
     resistance, inductance: of both in series, ohm and H.
+    gain: measured field over the field of this geometry, 1 while the geometry is trusted.
     """
 
     axis: Axis
@@ -71,6 +73,7 @@ class CoilPair:
     turns: int
     resistance: float
     inductance: float
+    gain: float = 1.0
 
     def __post_init__(self) -> None:
         if self.axis not in AXES:
@@ -80,6 +83,7 @@ class CoilPair:
         _require_positive(f"coil pair {self.axis}: turns", self.turns)
         _require_positive(f"coil pair {self.axis}: resistance in ohm", self.resistance)
         _require_positive(f"coil pair {self.axis}: inductance in H", self.inductance)
+        _require_positive(f"coil pair {self.axis}: field gain", self.gain)
 
     @property
     def centres(self) -> tuple[Vector, Vector]:
@@ -99,11 +103,17 @@ the outer radius; resistances and inductances are assumed."""
 class CoilSet:
     """The three pairs of a rig and what they do over its workspace (a square of 2 * `workspace`, m).
 
+    Points and fields are the workspace's; `registration` says where in it the coils stand.
     Raises ValueError when the three axes are not all there, or when the pairs cannot make every direction of
     field somewhere in the workspace.
     """
 
-    def __init__(self, pairs: Sequence[CoilPair] = PAPER_PAIRS, workspace: float = 0.06):
+    def __init__(
+        self,
+        pairs: Sequence[CoilPair] = PAPER_PAIRS,
+        workspace: float = 0.06,
+        registration: Registration = COINCIDENT,
+    ):
         if sorted(pair.axis for pair in pairs) != list(AXES):
             axes = ", ".join(pair.axis for pair in pairs)
             raise ValueError(f"a coil set has one pair on each of the axes x, y, z; got {axes or 'none'}")
@@ -111,8 +121,10 @@ class CoilSet:
         x, y, z = sorted(pairs, key=lambda pair: pair.axis)
         self.pairs: tuple[CoilPair, CoilPair, CoilPair] = (x, y, z)
         self.workspace = workspace
-        self._map = _field_map(self.pairs, workspace)
-        self._centre_allocation = self.local_allocation(0.0, 0.0)
+        self.registration = registration
+        self._sign = -1.0 if registration.magnet_reversed else 1.0
+        self._map = _field_map(self.pairs, workspace, registration)
+        self._centre_allocation = self.local_allocation(registration.x, registration.y)
 
     def field_at(self, points: ArrayLike, currents: ArrayLike) -> NDArray[np.float64]:
         """The field (n, 3) T at points (n, 3) m anywhere, for the currents (3,) A; exact, not mapped."""
@@ -120,7 +132,7 @@ class CoilSet:
 
     def field_per_ampere(self, points: ArrayLike) -> NDArray[np.float64]:
         """K (n, 3, 3) T/A at points (n, 3) m anywhere; keep it for a fixed grid: the field is K @ I."""
-        return field_per_ampere(self.pairs, np.asarray(points, dtype=float))
+        return field_per_ampere(self.pairs, np.asarray(points, dtype=float), self.registration)
 
     def plane_elements(self, x: float, y: float) -> PlaneElements:
         """(Kxx, Kxy, Kyx, Kyy, Kzz), T/A, on the plate at (x, y) m; the other elements are zero."""
@@ -133,8 +145,8 @@ class CoilSet:
 
     @property
     def centre(self) -> Matrix:
-        """K(0), T/A."""
-        return self.per_ampere(0.0, 0.0)
+        """K at the coils' centre, T/A."""
+        return self.per_ampere(self.registration.x, self.registration.y)
 
     def local_field(self, x: float, y: float, currents: Vector) -> Vector:
         """The field (T) on the plate at (x, y) m for the currents (A)."""
@@ -143,19 +155,26 @@ class CoilSet:
         return xx * i1 + xy * i2, yx * i1 + yy * i2, zz * i3
 
     def local_allocation(self, x: float, y: float) -> Matrix:
-        """The inverse of K(p), A/T: I = allocation B makes B at (x, y) m; row = pair, column = component."""
+        """The inverse of K(p), A/T: I = allocation B makes B at (x, y) m; row = pair, column = component.
+
+        For a reversed magnet it makes -B, which is to that robot what B is to one with its north at end A.
+        """
         xx, xy, yx, yy, zz = self._map.elements(x, y)
-        scale = 1.0 / (xx * yy - xy * yx)
-        return (yy * scale, -xy * scale, 0.0), (-yx * scale, xx * scale, 0.0), (0.0, 0.0, 1.0 / zz)
+        scale = self._sign / (xx * yy - xy * yx)
+        return (yy * scale, -xy * scale, 0.0), (-yx * scale, xx * scale, 0.0), (0.0, 0.0, self._sign / zz)
 
     def centre_allocation(self) -> Matrix:
-        """The inverse of K(0), A/T: the paper's currents, wherever the robot is."""
+        """The local allocation at the coils' centre, A/T: the paper's currents, wherever the robot is."""
         return self._centre_allocation
 
 
-def field_per_ampere(pairs: Sequence[CoilPair], points: NDArray[np.float64]) -> NDArray[np.float64]:
-    """K (n, 3, len(pairs)) T/A at points (n, 3) m, by magpylib's closed form for circular loops."""
-    fields = [magpylib.getB(_loops(pair), points, sumup=True).reshape(-1, 3) for pair in pairs]
+def field_per_ampere(
+    pairs: Sequence[CoilPair], points: NDArray[np.float64], registration: Registration = COINCIDENT
+) -> NDArray[np.float64]:
+    """K (n, 3, len(pairs)) T/A at points (n, 3) m of the workspace, by magpylib's closed form for loops."""
+    if not registration.frames_coincide:
+        return registration.turned(field_per_ampere(pairs, registration.to_coils(points)))
+    fields = [pair.gain * magpylib.getB(_loops(pair), points, sumup=True).reshape(-1, 3) for pair in pairs]
     return np.stack(fields, axis=-1)
 
 
@@ -171,8 +190,10 @@ def _loops(pair: CoilPair) -> list[magpylib.current.Circle]:
 
 
 @lru_cache(maxsize=8)
-def _field_map(pairs: tuple[CoilPair, CoilPair, CoilPair], workspace: float) -> FieldMap:
-    field_map = FieldMap(lambda points: field_per_ampere(pairs, points), workspace + MAP_MARGIN)
+def _field_map(
+    pairs: tuple[CoilPair, CoilPair, CoilPair], workspace: float, registration: Registration
+) -> FieldMap:
+    field_map = FieldMap(lambda points: field_per_ampere(pairs, points, registration), workspace + MAP_MARGIN)
     _check_condition(field_map, workspace)
     return field_map
 
@@ -205,33 +226,3 @@ def currents_for(allocation: Matrix, field: Vector) -> Vector:
     bx, by, bz = field
     (a, b, c), (d, e, f), (g, h, i) = allocation
     return a * bx + b * by + c * bz, d * bx + e * by + f * bz, g * bx + h * by + i * bz
-
-
-def limit_currents(currents: Vector, limits: Vector) -> tuple[Vector, bool]:
-    """The currents (A) within +-limits (A), all three scaled alike so that the field keeps its direction.
-
-    The second value says whether they were scaled. Raises ValueError for a current that is not finite: there
-    is no direction to keep, so nothing may flow.
-    """
-    one, two, three = limits
-    scale = min(_share(1, currents[0], one), _share(2, currents[1], two), _share(3, currents[2], three))
-    if scale >= 1.0:
-        return currents, False
-    return (
-        _within(currents[0] * scale, one),
-        _within(currents[1] * scale, two),
-        _within(currents[2] * scale, three),
-    ), True
-
-
-def _share(coil: int, current: float, limit: float) -> float:
-    """The part of this current that its limit allows, at most 1."""
-    _require_positive(f"the limit of coil {coil} in A", limit)
-    if not math.isfinite(current):
-        raise ValueError(f"the current of coil {coil} must be a finite number of A, got {current}; refused")
-    return limit / abs(current) if abs(current) > limit else 1.0
-
-
-def _within(current: float, limit: float) -> float:
-    """A scaled current may have been rounded to just above its limit."""
-    return min(max(current, -limit), limit)

@@ -8,27 +8,37 @@ may come from any.
 from __future__ import annotations
 
 import math
-from collections import deque
 from collections.abc import Callable
 from dataclasses import replace
 
-from control.controllers.manual import Jog, Manual
+from control.arbiter import Finding, Severity
+from control.coil_heat import ASSUMED_AT_START, CoilHeat
+from control.controllers.manual import Jog
 from control.gait import Gait
 from control.link.conversion import LinkError
 from control.model import PIVOT_A, Frame, Pivot, Pose, Tracking
-from control.news import Announcement, Ended
+from control.news import Announcement, Ended, News
 from control.parts import Parts
 from control.runs import RunRequest, RunState, Selection
-from control.safety import ENERGISED, Event, Finding, Refused, Severity, after, check_gait
+from control.safety import ENERGISED, Event, Refused, after, check_gait
 from control.snapshot import ZERO, Fault, RigState, Snapshot, Vector
+from control.steering import Steering
 from control.timing import TimingLog
 from control.trajectories import check_inside
 from control.vitals import Vitals
 from control.walk import Walk
-from control.walker import ControllerFault, Stride
+from control.walker import ControllerFault
 
-LOG_LENGTH = 200
-"""Announcements that wait for the shell to take them."""
+NEEDS_CONSENT = (
+    "this rig is real: arming puts current into its coils. See that nobody is at the coils and nothing magnetic "
+    "is near them, then arm with consent"
+)
+LEADS_OUT = (
+    "the next step would lead the robot out of the workspace; resume goes on as soon as it leads inward"
+)
+UNKNOWN_HEAT = (
+    f"what the coils carried before this start is not known: they count as {ASSUMED_AT_START:.0%} hot"
+)
 
 
 class ControlLoop:
@@ -41,21 +51,27 @@ class ControlLoop:
         self._state = RigState.DISARMED
         self._reason = "ready to arm"
         self._vitals = Vitals(parts, now)
+        self._steering = Steering(parts, self._vitals.guard)
         self._latched: Fault | None = None
         self._walk: Walk | None = None
         self._gait = Gait()
-        self._manual = Manual()
         self._outside = "estop", "emergency stop"
         self._tick = 0
         self._now = now
         self._pose: Pose | None = None
         self._sigma: Vector = ZERO
-        self._log: deque[Announcement] = deque(maxlen=LOG_LENGTH)
-        self._ended: deque[Ended] = deque(maxlen=LOG_LENGTH)
+        self._news = News()
+        if not parts.simulated:
+            self.announce("info", "heat", UNKNOWN_HEAT)
 
     @property
     def state(self) -> RigState:
         return self._state
+
+    @property
+    def parts(self) -> Parts:
+        """For who drives the rig while this loop is not stepped."""
+        return self._parts
 
     def field_at(self, time: float) -> tuple[float, float]:
         """Heading (unwrapped) and elevation of the field at a recent rig time (s), rad."""
@@ -67,19 +83,37 @@ class ControlLoop:
         walk = self._walk
         return walk.walker.controller.name if walk is not None and walk.walker.is_deciding else ""
 
+    def announce(self, severity: str, code: str, message: str) -> None:
+        """A line of the event log from somebody else on the rig's thread."""
+        self._news.add(Announcement(self._now, severity, code, message))
+
+    @property
+    def coil_heat(self) -> CoilHeat:
+        """The estimate of the coils' heat, for a loop that takes over the same coils."""
+        return self._vitals.heat
+
+    @coil_heat.setter
+    def coil_heat(self, heat: CoilHeat) -> None:
+        self._vitals.heat = heat
+
     def take_announcements(self) -> list[Announcement]:
         """What happened since the last call, oldest first."""
-        return [self._log.popleft() for _ in range(len(self._log))]
+        return self._news.take_lines()
 
     def take_ended(self) -> list[Ended]:
         """Runs that ended since the last call."""
-        return [self._ended.popleft() for _ in range(len(self._ended))]
+        return self._news.take_ended()
 
     # What the operator asks for ------------------------------------------------------------------
 
-    def arm(self, gait: Gait) -> None:
-        """Bring the field up along the robot's heading; raises `Refused`."""
+    def arm(self, gait: Gait, *, consent: bool = False) -> None:
+        """Bring the field up along the robot's heading; raises `Refused`.
+
+        consent: the operator has just said that current may flow, without which a real rig does not arm.
+        """
         state = after(self._state, Event.ARM)
+        if not (self._parts.simulated or consent):
+            raise Refused(NEEDS_CONSENT)
         check_gait(gait, self._parts.limits)
         self._require_fit()
         self._gait = gait
@@ -124,7 +158,8 @@ class ControlLoop:
         check_inside(walk.trajectory, self._parts.coils.workspace)
         walk.workspace = self._parts.coils.workspace
         walk.gait_model = self._parts.gait_model
-        self._manual.forget()
+        walk.put_controllers_into(self._parts.controller_case)
+        self._steering.forget()
         self._walk = walk
         self._gait = request.selection.gait
         self._enter(state, "walking", "info")
@@ -134,8 +169,8 @@ class ControlLoop:
         after(self._state, Event.JOG)
         gait = self._gait if jog.tilt is None else replace(self._gait, tilt=jog.tilt)
         check_gait(replace(gait, max_rate=abs(jog.rate)), self._parts.limits)
+        self._steering.take(jog, self._pose, self._now)
         self._gait = gait
-        self._manual.take(jog, self._now)
 
     def change(self, selection: Selection) -> None:
         """Another controller, trajectory or gait for the run that is on; raises like `start`."""
@@ -167,6 +202,7 @@ class ControlLoop:
         state = after(self._state, Event.RESUME)
         pose = self._require_fit()
         self._energise()
+        self._vitals.guard.resumed(pose)
         if self._walk is None:
             self._enter(RigState.ARMED, "ready to start", "info")
             return
@@ -177,14 +213,16 @@ class ControlLoop:
 
     def tick(self, frame: Frame | None, now: float) -> Snapshot:
         """Take a frame (None: none came in time) at rig time `now`; returns what everybody may see."""
-        gap, self._now = now - self._now, now
+        gap = now - self._now
+        if math.isfinite(now):
+            self._now = now
+        now = self._now
         self._tick += 1
         self._parts.field.advance(now)
         self._vitals.hear(now, self._state)
         if frame is not None:
             self._timing.frame_in(frame.index)
-            self._vitals.frame_came(now)
-            self._parts.perception.look(frame)
+            self._look(frame, now)
         self._pose, self._sigma = self._parts.perception.pose_at(now)
         self._judge(gap, now)
         if self._state in ENERGISED:
@@ -193,8 +231,16 @@ class ControlLoop:
             self._timing.bytes_out()
         return self._snapshot()
 
+    def _look(self, frame: Frame, now: float) -> None:
+        if self._vitals.frame_came(frame, now):
+            self._parts.perception.look(frame)
+            self._vitals.saw(self._state)
+
     def _judge(self, gap: float, now: float) -> None:
+        if self._walk is not None:
+            self._vitals.walked(self._walk.walker.stuck, now)
         findings = self._vitals.judge(gap, now, self._state, self._pose)
+        self._news.warn_of(findings, now)
         if self._parts.actuation.stopped_from_outside and self._state is not RigState.FAULT:
             self._latch(*self._outside)
         if not findings:
@@ -212,8 +258,7 @@ class ControlLoop:
         if pose is None:
             return
         try:
-            stride = self._stride(now, gap, pose)
-            self._parts.actuation.drive(self._driven_by(now), stride, pose, self._gait)
+            self._command(now, gap, pose)
         except ControllerFault as fault:
             self._latch("controller", str(fault))
         except LinkError as error:
@@ -224,23 +269,16 @@ class ControlLoop:
             self._end_run(RunState.FINISHED, "")
             self._enter(after(self._state, Event.FINISH), "run finished", "info")
 
-    def _stride(self, now: float, gap: float, pose: Pose) -> Stride:
-        field = self._parts.field
-        if self._walk is None or self._state is not RigState.RUNNING:
-            return self._by_hand(now)
-        return self._walk.step(now, gap, pose, field, self._parts.perception)
-
-    def _by_hand(self, now: float) -> Stride:
-        """A fresh jog, or standing still."""
-        field, jog = self._parts.field, self._manual.decide(now)
-        if jog is None or jog.sweep is None or not field.is_ready:
-            return Stride(field.pivot, 0.0, field.heading)
-        return Stride(jog.pivot, jog.rate, field.heading + math.copysign(jog.sweep, jog.rate))
-
-    def _driven_by(self, now: float) -> str:
-        if self._walk is not None:
-            return self._walk.request.selection.controller.name
-        return self._manual.name if self._manual.decide(now) is not None else ""
+    def _command(self, now: float, gap: float, pose: Pose) -> None:
+        """Send this tick's stride; one that leads out of the workspace holds a run and lets a jog stand still."""
+        walk = self._walk if self._state is RigState.RUNNING else None
+        stride = self._steering.stride(walk, now, gap, pose)
+        if self._steering.leads_out(stride, pose, now):
+            if walk is not None:
+                self._hold(LEADS_OUT, "error", "margin")
+                return
+            stride = self._steering.standing()
+        self._parts.actuation.drive(self._steering.driven_by(walk, now), stride, pose, self._gait)
 
     # Changes of state ----------------------------------------------------------------------------
 
@@ -256,6 +294,7 @@ class ControlLoop:
         if self._parts.actuation.stopped_from_outside:
             raise Refused("stopped; reset it first")
         self._vitals.energised(self._now)
+        self._vitals.guard.energised(pose)
         try:
             self._parts.actuation.start(self._now, pose, self._standing_on(), self._gait)
         except LinkError as error:
@@ -265,7 +304,8 @@ class ControlLoop:
         return PIVOT_A if self._walk is None else self._walk.walker.sweep.pivot
 
     def _stop_coils(self) -> None:
-        self._manual.forget()
+        self._steering.forget()
+        self._vitals.guard.rest()
         self._parts.actuation.stop(self._now)
 
     def _hold(self, reason: str, severity: str, code: str = "hold") -> None:
@@ -286,12 +326,12 @@ class ControlLoop:
 
     def _end_run(self, state: RunState, reason: str) -> None:
         if self._walk is not None:
-            self._ended.append(Ended(self._walk.id, state, reason, self._walk.metrics()))
+            self._news.end(Ended(self._walk.id, state, reason, self._walk.metrics()))
             self._walk = None
 
     def _enter(self, state: RigState, reason: str, severity: str, code: str = "") -> None:
         self._state, self._reason = state, reason
-        self._log.append(Announcement(self._now, severity, code or state.value, reason))
+        self.announce(severity, code or state.value, reason)
 
     # What everybody may see ----------------------------------------------------------------------
 
@@ -318,7 +358,9 @@ class ControlLoop:
             currents=currents,
             measured_currents=telemetry.measured_currents if telemetry is not None else ZERO,
             field=parts.coils.local_field(pose.x, pose.y, currents) if pose is not None else ZERO,
-            saturated=parts.actuation.saturated,
+            limited_by=parts.actuation.limited_by,
+            coil_heat=self._vitals.heat.shares,
+            refusals=self._vitals.refusals,
             body_tilt=parts.body_tilt(abs(telemetry.elevation))
             if self._state in ENERGISED and telemetry
             else 0.0,

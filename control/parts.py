@@ -7,7 +7,9 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from control.actuation import Actuation
+from control.coil_heat import ThermalLimits
 from control.coils import CoilSet
+from control.controllers import Law
 from control.field_model import FieldModel
 from control.gait_model import GaitModel
 from control.link.port import Link
@@ -40,9 +42,14 @@ class Parts:
     link: Link
     coils: CoilSet
     limits: Limits
+    thermal: ThermalLimits
+    frame_size: tuple[int, int]
+    """Width and height of the camera's pictures, px."""
     length: float
     simulated: bool
     gait_model: GaitModel
     """What is known of a pivot switch before the run begins."""
     body_tilt: Callable[[float], float]
     """From the field's tilt to the body's, rad, for drawing."""
+    controller_case: Callable[[Law], Law]
+    """What every controller is put into before it walks; the controller itself on a real rig."""

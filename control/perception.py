@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 from typing import Protocol
 
+from control.acceptance import without_nonsense
+from control.arbiter import PREDICT_FOR
 from control.backlash import Backlash
 from control.estimator import Estimator, EstimatorSettings
 from control.field_model import FieldModel
 from control.model import Expectation, Frame, Measurement, Observation, Pose, Tracking, wrap
-from control.safety import PREDICT_FOR
 from control.snapshot import ZERO, Vector
 
 THUMBNAIL = 16
@@ -39,6 +40,8 @@ class Perception:
         self.observation: Observation | None = None
         self.frame: Frame | None = None
         self.identical_frames = 0
+        self.refused_sightings = 0
+        """Sightings that were no finite numbers."""
         self.tracking = Tracking.LOST
         self._thumbnail = b""
 
@@ -52,10 +55,11 @@ class Perception:
         if self._repeats(frame) or not is_newer:
             return
         self.frame = frame
-        self.observation = self._tracker.update(frame, self._expect(frame))
-        measurement = self.observation.measurement
-        if measurement is not None and measurement.pose.is_finite:
-            self._take(measurement)
+        seen = self._tracker.update(frame, self._expect(frame))
+        self.observation = without_nonsense(seen)
+        self.refused_sightings += self.observation is not seen
+        if self.observation.measurement is not None:
+            self._take(self.observation.measurement)
         self._judge(frame)
 
     @property

@@ -1,40 +1,17 @@
-"""Whether the rig may put current into its coils: the state table and the failsafe arbiter.
+"""Whether the rig may put current into its coils: the table of its states, and what a gait may ask for.
 
-Both are pure. The arbiter turns what is known at one instant into findings; the most severe one decides.
-The table says which state follows; what it does not list is refused with the reason.
+The table says which state follows an event; what it does not list is refused with the reason. What is wrong
+at an instant, and how gravely, is the arbiter's (`control.arbiter`).
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from enum import IntEnum, StrEnum
+from enum import StrEnum
 
 from control.gait import Gait
-from control.model import Pose, Tracking
 from control.snapshot import RigState
-
-FRAME_STALE = 0.100
-"""A camera without a frame for this long is dead, s (three to six frames at 60 Hz, faults.md)."""
-FRAME_TOO_LATE = 0.150
-"""A frame that was captured longer ago than this must not steer the robot, s."""
-FROZEN_FRAMES = 3
-"""This many identical pictures in a row, the first included, are a frozen camera: noise never repeats."""
-PREDICT_FOR = 0.150
-"""How long the robot may be steered by prediction alone, s (faults.md)."""
-TELEMETRY_STALE = 0.300
-"""A board that says nothing for this long is gone, s (faults.md)."""
-LOOP_STALL = 0.200
-"""A tick that comes this much later than the one before stops the field, s (faults.md)."""
-CURRENT_MISMATCH = 0.100
-"""Sensed and commanded current may differ for this long, s (faults.md row 14)."""
-
-NOT_DRIVING = 0.150
-"""A board that should drive and does not for this long has expired or refused, s (five telemetry messages
-at the loop's pace, and the serial line's way there and back)."""
-
-SUPPLY_LOW = "supply_low"
-"""What the board calls a supply that is off; unlike its other faults it mends without a reset."""
 
 
 class Refused(Exception):
@@ -102,27 +79,12 @@ def after(state: RigState, event: Event) -> RigState:
     return following
 
 
-class Severity(IntEnum):
-    """HOLD: zero current, the run is kept.  DISARM: needs a new arming.  LATCH: needs a reset first."""
-
-    WARN = 1
-    HOLD = 2
-    DISARM = 3
-    LATCH = 4
-
-
-@dataclass(frozen=True, slots=True)
-class Finding:
-    severity: Severity
-    code: str
-    message: str
-
-
 @dataclass(frozen=True, slots=True)
 class Limits:
     """currents: A per coil.  field: T.  rate: rad/s.
 
-    soft, hard: half sizes of the squares that the centre should and must keep, m.
+    soft: half size of the square that the robot's centre is not driven out of, m.  hard: half size of the
+    square outside which it is not driven at all, m.
     """
 
     currents: tuple[float, float, float] = (8.0, 8.0, 8.0)
@@ -142,89 +104,3 @@ def check_gait(gait: Gait, limits: Limits) -> None:
             raise Refused(
                 f"the {name} of {value:g} {unit} is beyond this rig's {limit:g} {unit}; choose less"
             )
-
-
-@dataclass(frozen=True, slots=True)
-class Health:
-    """What is known at one instant; times and ages in s, None or inf for what never came.
-
-    tick_gap: since the last tick.  frame_age: since the newest frame arrived.  frame_delay: from its
-    capture to now.  link_ready: greeted and configured.  link_reason: why it is not.
-    link_incident: how the conversation with the board broke since the arm edge, "" if it did not.
-    not_driving: how long the board has not been driving although it should.
-    current_mismatch: how long sensed and commanded currents have disagreed.
-    """
-
-    tick_gap: float
-    frame_age: float
-    frame_delay: float
-    identical_frames: int
-    tracking: Tracking
-    tracking_age: float
-    pose: Pose | None
-    link_ready: bool
-    link_reason: str
-    link_incident: str
-    telemetry_age: float
-    board_faults: tuple[str, ...]
-    board_state: str
-    not_driving: float
-    current_mismatch: float
-
-
-def assess(health: Health, limits: Limits) -> tuple[Finding, ...]:
-    """Everything that is wrong now, most severe first. Comparisons accept; NaN never passes one."""
-    found = [*_camera(health), *_robot(health, limits), *_board(health)]
-    if not health.tick_gap <= LOOP_STALL:
-        found.append(Finding(Severity.HOLD, "stall", f"the loop stood still for {health.tick_gap:.2f} s"))
-    return tuple(sorted(found, key=lambda finding: -finding.severity))
-
-
-def _camera(health: Health) -> list[Finding]:
-    if not health.frame_age <= FRAME_STALE:
-        return [Finding(Severity.HOLD, "camera", f"no frame {_for(health.frame_age)}")]
-    if health.identical_frames >= FROZEN_FRAMES:
-        message = f"the camera repeats one picture ({health.identical_frames} times)"
-        return [Finding(Severity.HOLD, "frozen", message)]
-    if not 0.0 <= health.frame_delay <= FRAME_TOO_LATE:
-        allowed = f"0 to {FRAME_TOO_LATE * 1e3:.0f} ms are allowed"
-        message = f"frames are {health.frame_delay * 1e3:.0f} ms old, {allowed}"
-        return [Finding(Severity.HOLD, "late", message)]
-    return []
-
-
-def _robot(health: Health, limits: Limits) -> list[Finding]:
-    if health.tracking is Tracking.LOST or not health.tracking_age <= PREDICT_FOR:
-        return [Finding(Severity.HOLD, "lost", "the robot is not seen, or not where it should be")]
-    if health.pose is None or not health.pose.is_finite:
-        return [Finding(Severity.HOLD, "lost", "the robot's pose is not known")]
-    reach = max(abs(health.pose.x), abs(health.pose.y))
-    where = f"the robot is at ({health.pose.x * 1e3:.1f}, {health.pose.y * 1e3:.1f}) mm"
-    if not reach <= limits.hard:
-        return [Finding(Severity.HOLD, "outside", f"{where}, the limit is ±{limits.hard * 1e3:.0f} mm")]
-    if not reach <= limits.soft:
-        return [Finding(Severity.WARN, "margin", f"{where}, near the limit of the workspace")]
-    return []
-
-
-def _board(health: Health) -> list[Finding]:
-    if health.link_incident:
-        return [Finding(Severity.LATCH, "board-reset", health.link_incident)]
-    if not health.link_ready:
-        return [Finding(Severity.DISARM, "link", health.link_reason)]
-    if not health.telemetry_age <= TELEMETRY_STALE:
-        return [Finding(Severity.DISARM, "telemetry", f"no word from the board {_for(health.telemetry_age)}")]
-    if health.board_faults == (SUPPLY_LOW,):
-        return [Finding(Severity.DISARM, "supply", "the supply of the coils is low or off; switch it on")]
-    if health.board_faults:
-        return [Finding(Severity.LATCH, "board", f"the board reports: {', '.join(health.board_faults)}")]
-    if not health.not_driving <= NOT_DRIVING:
-        return [Finding(Severity.DISARM, "board", f"the board does not drive: it is {health.board_state}")]
-    if not health.current_mismatch <= CURRENT_MISMATCH:
-        message = "the coils do not carry the commanded current: check the supply and the coil leads"
-        return [Finding(Severity.DISARM, "current", message)]
-    return []
-
-
-def _for(age: float) -> str:
-    return f"for {age:.2f} s" if math.isfinite(age) else "yet"

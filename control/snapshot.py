@@ -5,6 +5,7 @@ All values are SI; the edge (`server.api.schemas`) converts to the lab's units.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 
@@ -61,10 +62,32 @@ class Timing:
 
 
 @dataclass(frozen=True, slots=True)
+class LinkCounts:
+    """What went over the link since the program began, in messages.
+
+    broken: received frames that were dropped, by what was wrong with them.  resends: questions that had to be
+    asked again.  reconnects: how often a lost port was opened again.
+    Counted by the board since its boot: board_bad, broken frames; refused and stale, whole messages that it
+    did not obey.
+    """
+
+    sent: int
+    received: int
+    broken: Mapping[str, int]
+    resends: int
+    reconnects: int
+    board_bad: int
+    refused: int
+    stale: int
+
+
+@dataclass(frozen=True, slots=True)
 class LinkStatus:
     """The serial link to the board.
 
-    state: "closed", "greeting", "configuring" or "ready".  round_trip: last drive to its echo, s, or None.
+    state: "closed", "greeting", "configuring" or "ready".  round_trip: last drive to its echo, s, or None;
+    round_trip_median, round_trip_p99: of the last drives.  bad_frames: received and dropped.
+    bad_share: 0..1 of the frames of the last second, in the worse direction.
     """
 
     state: str
@@ -72,7 +95,11 @@ class LinkStatus:
     firmware: str
     boot_id: int
     round_trip: float | None
+    round_trip_median: float | None
+    round_trip_p99: float | None
     bad_frames: int
+    bad_share: float
+    counts: LinkCounts
     board_state: str
     board_faults: tuple[str, ...]
     supply: float
@@ -95,6 +122,15 @@ class RunProgress:
 
 
 @dataclass(frozen=True, slots=True)
+class Refusals:
+    """What was not let in since the program began: pictures, sightings of the robot, reports of the board."""
+
+    frames: int = 0
+    sightings: int = 0
+    reports: int = 0
+
+
+@dataclass(frozen=True, slots=True)
 class Snapshot:
     """One tick.
 
@@ -104,7 +140,8 @@ class Snapshot:
     tracking_age: time since the last accepted measurement, s (inf before the first one).
     reference: the desired point, m, while a run is on.  error: distance from the pose to it, m.
     currents, measured_currents: commanded and sensed coil currents, A.  field: the field that the
-    commanded currents make at the robot, T.  saturated: a current was scaled back to its limit.
+    commanded currents make at the robot, T.  limited_by: the limit that holds the command back, "" for none.
+    coil_heat: share of the heat that each coil may have, estimated.  refusals: what was not let in.
     """
 
     tick: int
@@ -125,7 +162,9 @@ class Snapshot:
     currents: Vector
     measured_currents: Vector
     field: Vector
-    saturated: bool
+    limited_by: str
+    coil_heat: Vector
+    refusals: Refusals
     body_tilt: float
     run: RunProgress | None
     timing: Timing

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
 from dataclasses import replace
 
+from control.controllers import Law
 from control.field_model import FieldModel
 from control.gait import Gait
 from control.gait_model import GaitModel
@@ -15,6 +18,13 @@ from control.snapshot import RunProgress
 from control.trajectories import Trajectory
 from control.trajectories.reference import Reference
 from control.walker import Moment, Stride, Walker
+
+Case = Callable[[Law], Law]
+"""What a rig puts a controller into: itself, or on a simulated rig a fault point."""
+
+
+def _bare(controller: Law) -> Law:
+    return controller
 
 
 class Walk:
@@ -29,6 +39,7 @@ class Walk:
         self.walker = Walker(selection.build_controller(), selection.gait, length, pivot, pose.heading)
         self.workspace: float | None = None
         self.gait_model: GaitModel | None = None
+        self._case: Case = _bare
         self.elapsed = self._began = 0.0
         self.tally = MetricsTally(length)
         self._length = length
@@ -61,6 +72,11 @@ class Walk:
         whole = self._began + self._reference.duration
         return whole if self.request.duration is None else min(whole, self.request.duration)
 
+    def put_controllers_into(self, case: Case) -> None:
+        """Every controller of this walk answers through `case`."""
+        self._case = case
+        self.walker.controller = case(self.walker.controller)
+
     def change(self, selection: Selection) -> None:
         """Go on with another choice; a new path starts at its beginning."""
         if selection.trajectory != self.request.selection.trajectory:
@@ -69,7 +85,7 @@ class Walk:
             self._began = self.elapsed
         else:
             self._reference.change(selection.gait)
-        self.walker.change(selection.build_controller(), selection.gait)
+        self.walker.change(self._case(selection.build_controller()), selection.gait)
         self.request = replace(self.request, selection=selection)
 
     def step(
@@ -81,7 +97,7 @@ class Walk:
         self.elapsed += elapsed
         self._pose = pose
         self._reference.advance_to(self.elapsed - self._began, pose)
-        reference = self.reference
+        reference = self._finite_reference()
         if not self._reference.is_approaching:
             self.tally.add(pose, pose.distance_to(*reference))
         moment = Moment(
@@ -96,6 +112,14 @@ class Walk:
             slip=self.gait_model or GaitModel(self._length, switch_time=field.ramp),
         )
         return self.walker.step(moment)
+
+    def _finite_reference(self) -> tuple[float, float]:
+        """The desired point now, m; raises ValueError where the path gives none."""
+        x, y = self.reference
+        if not (math.isfinite(x) and math.isfinite(y)):
+            name = self.request.selection.trajectory.name
+            raise ValueError(f"the path {name!r} leads to ({x}, {y}) m")
+        return x, y
 
     def _reference_on(self, trajectory: Trajectory, gait: Gait) -> Reference:
         start = (self._pose.x, self._pose.y) if gait.approach else None

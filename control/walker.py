@@ -11,7 +11,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from control.controllers.controller import Controller, Decision, Situation
+from control.controllers.controller import Decision, Law, Situation
 from control.gait import Gait, Sweep
 from control.gait_model import GaitModel
 from control.model import TURN, Pivot, Pose
@@ -60,7 +60,7 @@ class Walker:
     """One walk of one controller on the rig."""
 
     def __init__(
-        self, controller: Controller, gait: Gait, length: float, pivot: Pivot, heading: float
+        self, controller: Law, gait: Gait, length: float, pivot: Pivot, heading: float
     ) -> None:
         self.controller = controller
         self.gait = gait
@@ -76,7 +76,7 @@ class Walker:
         self._extensions = 0
         self._settled_since = math.inf
 
-    def change(self, controller: Controller, gait: Gait) -> None:
+    def change(self, controller: Law, gait: Gait) -> None:
         """Another law or gait from the next tick on; the sweep that is under way takes the new angle."""
         self.controller = controller
         self.gait = gait

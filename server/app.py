@@ -16,8 +16,11 @@ from server.api import (
     actions,
     camera,
     controllers,
+    faults,
     manual,
+    ports,
     problems,
+    rig_file,
     runs,
     selection,
     state,
@@ -35,6 +38,7 @@ from server.scene_page import scene_page
 
 if TYPE_CHECKING:
     from server.rig import Rig
+    from server.rig_changes import RigChanges
 
 log = logging.getLogger(__name__)
 
@@ -48,8 +52,28 @@ PROBLEM_SCHEMA = {
 RESPONSES: dict[int | str, dict[str, Any]] = dict.fromkeys((409, 422), PROBLEM_SCHEMA)
 
 
-def create_app(rig: Rig, hosts: Collection[str] = ()) -> FastAPI:
-    """The application of one rig. hosts: names it may be asked by, beside localhost and its address."""
+ROOMS = (
+    state,
+    rig_file,
+    selection,
+    actions,
+    manual,
+    controllers,
+    trajectories,
+    runs,
+    camera,
+    telemetry,
+    faults,
+    ports,
+)
+"""One router a resource."""
+
+
+def create_app(rig: Rig, hosts: Collection[str] = (), changes: RigChanges | None = None) -> FastAPI:
+    """The application of one rig. hosts: names it may be asked by, beside localhost and its address.
+
+    changes: the rig's file, when it has one that may be changed.
+    """
     app = FastAPI(
         title="pivotrig",
         version=state.VERSION,
@@ -59,9 +83,10 @@ def create_app(rig: Rig, hosts: Collection[str] = ()) -> FastAPI:
         lifespan=lifespan,
     )
     app.state.rig = rig
+    app.state.rig_changes = changes
     app.state.pictures = Pictures(rig)
     app.state.tick_text = TickText()
-    app.state.scene = SceneFeed(rig, scene_geometry(rig))
+    app.state.scene = SceneFeed(rig, lambda: scene_geometry(rig))
     app.add_middleware(Door, hosts=hosts)
     problems.install(app)
     add_routes(app)
@@ -71,16 +96,20 @@ def create_app(rig: Rig, hosts: Collection[str] = ()) -> FastAPI:
 @asynccontextmanager
 async def lifespan(app: FastAPI) -> AsyncIterator[None]:
     """The rig stops before everything else does, and whatever else fails: its stop zeroes the coils."""
-    rig, scene = app.state.rig, app.state.scene
+    rig, scene, changes = app.state.rig, app.state.scene, app.state.rig_changes
     await rig.start()
     try:
         await app.state.pictures.start()
         await start_scene(scene)
+        if changes is not None:
+            changes.start()
         yield
     finally:
         try:
             await rig.stop()
         finally:
+            if changes is not None:
+                await changes.stop()
             end_streams(app)
             await scene.stop()
             app.state.pictures.close()
@@ -112,7 +141,7 @@ def scene_geometry(rig: Rig) -> SceneGeometry:
 
 def add_routes(app: FastAPI) -> None:
     api = APIRouter(prefix=PREFIX, responses=RESPONSES)
-    for room in (state, selection, actions, manual, controllers, trajectories, runs, camera, telemetry):
+    for room in ROOMS:
         api.include_router(room.router)
     api.include_router(camera.sockets)
     app.include_router(api)

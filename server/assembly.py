@@ -5,26 +5,36 @@ from __future__ import annotations
 import itertools
 import math
 import time
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
 
 from control.actuation import Actuation, ActuationSettings
+from control.coil_heat import ThermalLimits
 from control.coils import CoilPair, CoilSet
 from control.estimator import EstimatorSettings
 from control.field_model import FieldModel
 from control.gait_model import GaitModel
+from control.limiter import CoilLimits, check_field_slew
 from control.link.conversion import Configuration
 from control.link.port import Link
+from control.link.traffic import TrafficLog
 from control.loop import ControlLoop
 from control.model import Pose, body_tilt
 from control.parts import Camera, Parts
-from control.perception import Perception
+from control.perception import Perception, Tracker
+from control.registration import Registration
 from control.safety import Limits
 from control.simulation.board import TwinBoard, Winding
+from control.simulation.emulated import EmulatedBoard, prepare
+from control.simulation.faults.injection import Faults
 from control.simulation.lockstep import RemoteBoard
 from control.simulation.plant import build_plant
+from control.simulation.wiring import Wiring
 from control.simulation.world import Board, World
-from server.settings import MM, MS, Coil, RigFile
+from server.data_folder import data_folder
+from server.seams import FaultySeams, Seams
+from server.settings import MM, MS, Coil, RegistrationSection, RigFile
 from vision.calibration import CameraModel
 from vision.cameras import open_camera
 from vision.detection import ColourRange, RegionFilter
@@ -37,6 +47,9 @@ FULL_FIELD = 0.010
 TOO_BUSY = 0.07
 """A computer that simulates nothing for this long, s, has stopped the simulated world rather than made the rig late:
 with the camera's 35 ms and one frame, a longer gap would make a frame too old and a command expire."""
+
+TRAFFIC_LOG = "link-traffic.log"
+"""In the data folder."""
 
 _names = (f"rig-{number}" for number in itertools.count(1))
 
@@ -54,6 +67,8 @@ class Machine:
     link: Link
     loop: ControlLoop
     world: World | None
+    faults: Faults | None
+    traffic: TrafficLog | None
 
     def open(self) -> None:
         """Open the link; raises `LinkError`."""
@@ -66,30 +81,51 @@ class Machine:
     def close(self) -> None:
         """Zero the coils and give everything back."""
         self.link.close()
+        if self.traffic is not None:
+            self.traffic.close()
         self.camera.close()
         if self.world is not None:
             self.world.close()
 
 
-def build_machine(settings: RigFile, *, realtime: bool) -> Machine:
+def build_machine(settings: RigFile, *, realtime: bool, data: Path | None = None) -> Machine:
     """Wire a rig. realtime: a simulated world keeps pace with the clock; else it runs as fast as it goes.
+    data: the data folder, if not the user's.
 
     Raises ValueError, `CameraError` and `LinkError` with what is wrong.
     """
-    coils = _coils(settings)
+    coils = coil_set(settings)
+    _check_field_slew(settings, coils)
     model = _camera_model(settings)
     world, port = _world(settings, coils, realtime) if settings.is_simulated else (None, settings.link.port)
     camera = _camera(settings, model, world, realtime)
-    link = Link(port, settings.link.baud, _configuration(settings), camera.now)
+    seams = _seams(settings, world, camera)
+    link = seams.link(port, settings.link.baud, board_configuration(settings), camera.now)
+    traffic = _traffic(settings, link, camera, data)
     tracker = _tracker(settings, model)
-    parts = _parts(settings, coils, link, tracker, simulated=world is not None)
+    parts = _parts(settings, coils, link, seams.tracker(tracker), seams, simulated=world is not None)
     loop = ControlLoop(parts, time.perf_counter, camera.now())
+    faults = seams.faults(camera.now, loop)
     body_height = settings.robot.body_height_mm * MM
-    return Machine(settings, camera, model, body_height, tracker, coils, link, loop, world)
+    return Machine(settings, camera, model, body_height, tracker, coils, link, loop, world, faults, traffic)
+
+
+def _traffic(settings: RigFile, link: Link, camera: Camera, data: Path | None) -> TrafficLog | None:
+    if not settings.link.traffic_log:
+        return None
+    traffic = TrafficLog(data_folder(data) / TRAFFIC_LOG, camera.now)
+    link.put_before(traffic.wrap)
+    return traffic
+
+
+def _seams(settings: RigFile, world: World | None, camera: Camera) -> Seams:
+    if world is None or not isinstance(camera, SyntheticCamera):
+        return Seams()
+    return FaultySeams(settings, world, camera)
 
 
 def _parts(
-    settings: RigFile, coils: CoilSet, link: Link, tracker: ColourTracker, *, simulated: bool
+    settings: RigFile, coils: CoilSet, link: Link, tracker: Tracker, seams: Seams, *, simulated: bool
 ) -> Parts:
     field = FieldModel(settings.link.ramp_ms * MS, _field_slew(settings))
     length = settings.robot.length_mm * MM
@@ -101,10 +137,13 @@ def _parts(
         link=link,
         coils=coils,
         limits=_limits(settings),
+        thermal=_thermal(settings),
+        frame_size=settings.camera.size_px,
         length=length,
         simulated=simulated,
         gait_model=_gait_model(settings),
         body_tilt=_body_tilt(settings.robot.lift_ratio),
+        controller_case=seams.controller,
     )
 
 
@@ -120,10 +159,36 @@ def _gait_model(settings: RigFile) -> GaitModel:
     )
 
 
-def _coils(settings: RigFile) -> CoilSet:
+def coil_set(settings: RigFile) -> CoilSet:
+    """The coils as the rig file has them."""
+    """The rig's coils; raises ValueError when they cannot make every direction of field."""
     coils = settings.coils
     pairs = [_pair("x", coils.x), _pair("y", coils.y), _pair("z", coils.z)]
-    return CoilSet(pairs, 0.5 * settings.limits.workspace_mm * MM)
+    return CoilSet(pairs, 0.5 * settings.limits.workspace_mm * MM, registration_of(coils.registration))
+
+
+def registration_of(section: RegistrationSection) -> Registration:
+    """The same in SI."""
+    return Registration(
+        x=section.x_mm * MM,
+        y=section.y_mm * MM,
+        rotation=math.radians(section.rotation_deg),
+        magnet_reversed=section.magnet_reversed,
+    )
+
+
+def _true_coils(settings: RigFile, coils: CoilSet) -> CoilSet:
+    """The simulated coils: as the rig file has them but for what the simulation says of gains and place."""
+    gains, section = settings.simulation.field_gain, settings.simulation.registration
+    if gains is None and section is None:
+        return coils
+    registration = coils.registration if section is None else registration_of(section)
+    pairs = coils.pairs if gains is None else _with_gains(coils.pairs, gains)
+    return CoilSet(pairs, coils.workspace, registration)
+
+
+def _with_gains(pairs: Sequence[CoilPair], gains: list[float]) -> list[CoilPair]:
+    return [replace(pair, gain=gain) for pair, gain in zip(pairs, gains, strict=True)]
 
 
 def _pair(axis: str, coil: Coil) -> CoilPair:
@@ -134,6 +199,7 @@ def _pair(axis: str, coil: Coil) -> CoilPair:
         turns=coil.turns,
         resistance=coil.resistance_ohm,
         inductance=coil.inductance_mH * 1e-3,
+        gain=coil.field_gain,
     )
 
 
@@ -156,18 +222,22 @@ def _world(settings: RigFile, coils: CoilSet, realtime: bool) -> tuple[World, st
     )
     plant = build_plant(simulation.plant, settings.robot.length_mm * MM, start, simulation.seed)
     board, port = _board(settings, realtime)
-    return World(board, plant, coils), port
+    return World(board, plant, _true_coils(settings, coils), wiring=Wiring(simulation.wiring)), port
 
 
 def _board(settings: RigFile, realtime: bool) -> tuple[Board, str]:
-    if settings.simulation.board != "twin":
-        return RemoteBoard(settings.simulation.board, realtime=realtime), settings.link.port
-    name = next(_names)
     coils = settings.coils
     windings = _winding(coils.x), _winding(coils.y), _winding(coils.z)
-    return TwinBoard(
-        name, windings, coils.supply_V, boot_id=settings.simulation.seed % 0xFFFF + 1
-    ), f"sim://{name}"
+    match settings.simulation.board:
+        case "twin":
+            name = next(_names)
+            boot_id = settings.simulation.seed % 0xFFFF + 1
+            return TwinBoard(name, windings, coils.supply_V, boot_id=boot_id), f"sim://{name}"
+        case "emulated":
+            board = EmulatedBoard(prepare(), windings, coils.supply_V, realtime)
+            return board, board.port
+        case url:
+            return RemoteBoard(url, realtime=realtime), settings.link.port
 
 
 def _winding(coil: Coil) -> Winding:
@@ -214,7 +284,8 @@ def _field_slew(settings: RigFile) -> float:
     return FULL_FIELD / (settings.link.field_ramp_ms * MS)
 
 
-def _configuration(settings: RigFile) -> Configuration:
+def board_configuration(settings: RigFile) -> Configuration:
+    """What the board is told of this rig."""
     coils, limits = settings.coils, settings.limits
     x, y, z = coils.x, coils.y, coils.z
     return Configuration(
@@ -228,7 +299,14 @@ def _configuration(settings: RigFile) -> Configuration:
         max_field=limits.field_mT * 1e-3,
         max_rate=math.radians(limits.rate_deg_s),
         max_tilt=math.radians(60.0),
+        sense_gains=(_sense_gains(x), _sense_gains(y), _sense_gains(z)),
+        supply_scale=coils.supply_full_scale_V,
     )
+
+
+def _sense_gains(coil: Coil) -> tuple[float, float]:
+    forward, reverse = coil.sense_mA_per_count
+    return forward * 1e-3, reverse * 1e-3
 
 
 def _estimator(settings: RigFile) -> EstimatorSettings:
@@ -249,11 +327,34 @@ def _estimator(settings: RigFile) -> EstimatorSettings:
 
 def _actuation(settings: RigFile) -> ActuationSettings:
     return ActuationSettings(
-        currents=_triple(settings.limits.current_A),
+        limits=_coil_limits(settings),
         time_to_live=settings.link.time_to_live_ms * MS,
         tick=1.0 / settings.camera.rate_Hz,
         allocation=settings.coils.allocation,
     )
+
+
+def _coil_limits(settings: RigFile) -> CoilLimits:
+    coils, limits = settings.coils, settings.limits
+    return CoilLimits(
+        currents=_triple(limits.current_A),
+        power=limits.power_W,
+        slew=_triple(limits.current_slew_A_s),
+        resistances=(coils.x.resistance_ohm, coils.y.resistance_ohm, coils.z.resistance_ohm),
+        ramp=settings.link.ramp_ms * MS,
+        field_slew=_field_slew(settings),
+    )
+
+
+def _thermal(settings: RigFile) -> ThermalLimits:
+    limits = settings.limits
+    return ThermalLimits(_triple(limits.continuous_A), _triple(limits.heat_time_constant_s))
+
+
+def _check_field_slew(settings: RigFile, coils: CoilSet) -> None:
+    """At the centre and in the corners, where a pair needs most and least current for its field."""
+    for x, y in itertools.product((-coils.workspace, 0.0, coils.workspace), repeat=2):
+        check_field_slew(coils.local_allocation(x, y), _coil_limits(settings))
 
 
 def _limits(settings: RigFile) -> Limits:

@@ -24,7 +24,8 @@ from control.safety import Refused
 from control.snapshot import Snapshot
 from control.trajectories import OutsideWorkspace
 from control.trajectories.waypoint_file import WaypointFileError
-from server.commands import calibrate
+from server.commands import calibrate, firmware
+from server.commands.doctor import doctor
 from server.commands.outcome import (
     FAILED,
     REFUSED,
@@ -32,13 +33,16 @@ from server.commands.outcome import (
     RigOption,
     console,
     fail,
+    open_rig_store,
     read_rig_file,
     warn,
     with_simulation,
 )
 from server.commands.reproduce import reproduce
+from server.data_folder import data_folder
 from server.environment import check_environment
 from server.settings import RigFile, in_words
+from server.signals import coils_stop_first
 from server.waypoint_import import with_points
 
 app = typer.Typer(
@@ -50,6 +54,8 @@ app = typer.Typer(
 
 
 app.add_typer(calibrate.app, name="calibrate")
+app.add_typer(firmware.app, name="firmware")
+app.command()(doctor)
 app.command()(reproduce)
 
 
@@ -98,13 +104,18 @@ def serve(
     """Open the rig and serve its dashboard."""
     check_environment()
     load_plugins(plugin)
-    settings = read_rig_file(rig)
-    from server.serving import ServeError, serve_rig
+    store = open_rig_store(rig, data)
+    from server.serving import Place, ServeError, serve_rig
 
+    as_run = RigFile.as_simulated if sim else _as_it_is
     try:
-        serve_rig(settings.as_simulated() if sim else settings, host, port, data, open_browser)
+        serve_rig(store, as_run, Place(host, port), data_folder(data), open_browser)
     except ServeError as error:
         raise fail(str(error), FAILED) from error
+
+
+def _as_it_is(settings: RigFile) -> RigFile:
+    return settings
 
 
 @app.command()
@@ -147,13 +158,13 @@ def _run(rig_file: RigFile, request: RunRequest, as_json: bool) -> None:
     from server.api.runs import metrics_json
     from server.assembly import build_machine
     from server.headless import run_headless
-    from server.rig import new_id
+    from server.run_list import new_id
     from vision.cameras import CameraError
 
     try:
         machine = build_machine(rig_file, realtime=not rig_file.is_simulated)
         id = new_id()
-        with _Progress() as (progress, task):
+        with _Progress() as (progress, task), coils_stop_first(machine.stop_coils):
             done = run_headless(machine, id, request, lambda snapshot: _show(progress, task, snapshot))
     except (Refused, LinkError, CameraError) as error:
         raise fail(str(error), REFUSED) from error

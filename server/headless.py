@@ -12,7 +12,8 @@ from control.safety import Refused
 from control.snapshot import RigState, Snapshot
 from server.assembly import Machine
 
-FRAME_TIMEOUT = 0.05
+FRAME_TIMEOUT = 0.034
+"""As in `server.rig`, s."""
 READY_WITHIN = 5.0
 """Camera, track and board must be there after this long, s of rig time."""
 

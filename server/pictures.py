@@ -24,7 +24,7 @@ class Pictures:
     def __init__(self, rig: Rig) -> None:
         self._rig = rig
         self._thread = ThreadPoolExecutor(1, thread_name_prefix="jpeg")
-        self._made: dict[View, tuple[int, asyncio.Future[bytes]]] = {}
+        self._made: dict[View, tuple[Frame, asyncio.Future[bytes]]] = {}
 
     async def start(self) -> None:
         await asyncio.get_running_loop().run_in_executor(self._thread, bytes)
@@ -43,10 +43,10 @@ class Pictures:
         return frame.index, await self.encoded(frame, view)
 
     async def encoded(self, frame: Frame, view: View) -> bytes:
-        index, made = self._made.get(view, (None, None))
-        if made is None or index != frame.index:
+        encoded, made = self._made.get(view, (None, None))
+        if made is None or encoded is not frame:
             made = self._start(frame, view)
-            self._made[view] = (frame.index, made)
+            self._made[view] = (frame, made)
         return await asyncio.shield(made)
 
     def _start(self, frame: Frame, view: View) -> asyncio.Future[bytes]:
@@ -57,18 +57,18 @@ class Pictures:
         return lambda: encode_jpeg(frame.image)
 
     def _mask(self, frame: Frame) -> Callable[[], bytes]:
-        return lambda: encode_jpeg(self._rig.tracker.mask(frame.image))
+        return lambda: encode_jpeg(self._rig.machine.tracker.mask(frame.image))
 
     def _overlay(self, frame: Frame) -> Callable[[], bytes]:
         """What to draw is gathered on the event loop, where it holds still."""
-        drawing, model = self._drawing(), self._rig.camera_model
+        drawing, model = self._drawing(), self._rig.machine.camera_model
         return lambda: encode_jpeg(draw_overlay(frame.image, model, drawing))
 
     def _drawing(self) -> Drawing:
         rig, snapshot = self._rig, self._rig.snapshot
         return Drawing(
             length=rig.settings.robot.length_mm * MM,
-            body_height=rig.body_height,
+            body_height=rig.machine.body_height,
             pose=snapshot.pose,
             pivot=snapshot.command.pivot,
             observation=snapshot.observation,

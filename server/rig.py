@@ -10,10 +10,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import logging
-import secrets
-from collections import deque
-from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from datetime import UTC, datetime
 from typing import Any, TypeVar
@@ -24,77 +21,93 @@ from numpy.typing import NDArray
 from control.coils import CoilSet
 from control.controllers.manual import Jog
 from control.model import Frame
-from control.news import Announcement, Ended
-from control.runs import Choice, Run, RunRequest, RunState, Selection
+from control.news import Announcement
+from control.runs import Run, RunRequest, RunState, Selection
 from control.safety import Refused
+from control.simulation.faults.injection import Faults
 from control.snapshot import RigState, Snapshot
 from control.trajectories import check_inside
-from control.trajectories.custom import TooManyPaths, save_path
 from control.trajectories.trajectory import points_of
-from control.trajectories.waypoints import Smoothing
 from server.api.choices import selection_json
-from server.api.runs import run_json
-from server.assembly import Machine
+from server.assembly import Machine, build_machine
+from server.custom_trajectories import CustomTrajectories
+from server.event_log import EventLog
+from server.exchange import Build, Exchange, NoMachine, exchange, require_disarmed
+from server.rig_thread import RigThread
+from server.run_list import RunList, new_id
 from server.settings import RigFile
-from server.streams import Publisher, announcer
-from server.watchdog import STALL, Hang, Watchdog, stopped
-from vision.calibration import CameraModel
+from server.streams import Publisher
+from server.trail import Trail
+from server.watchdog import Hang, Watchdog, stopped
 
 T = TypeVar("T")
 
 log = logging.getLogger(__name__)
 
-FRAME_TIMEOUT = 0.05
-"""A tick happens at least this often, frame or not, s: half the age at which a camera counts as dead."""
+FRAME_TIMEOUT = 0.034
+"""A tick happens at least this often, frame or not, s: the third without a frame finds the camera dead (102 ms)."""
 ESTOP_ANSWER = 0.5
 """An emergency stop is answered after this long at the latest, s; the coils have been stopped at once."""
-RUNS_KEPT = 1000
-EVENTS_KEPT = 1000
-TRAIL_POINTS = 600
-"""The trail reaches back a minute at ten points a second."""
-TRAIL_EVERY = 6
+TURN_WITHIN = 10.0
+"""A tick, or an exchange of the machine with a slow camera, is over after this long, s."""
+LAST_TURN = 2.0
+"""At the end an exchange that goes on is waited for, but not for ever, s (gone within 5 s, faults.md row 16)."""
 
 
 class Rig:
     """One rig, opened: start it, ask it, stop it."""
 
-    def __init__(self, machine: Machine) -> None:
+    def __init__(self, machine: Machine, build: Build | None = None) -> None:
+        """build: makes another machine when settings are changed; by default like `machine`, in real time."""
         self._machine = machine
+        self._build = build or (lambda settings: build_machine(settings, realtime=True))
         self._loop = machine.loop
-        self._thread = ThreadPoolExecutor(max_workers=1, thread_name_prefix="rig")
+        self._thread = RigThread()
         self._task: asyncio.Task[None] | None = None
-        self._watchdog = Watchdog(lambda: machine.loop.deciding)
-        self.hangs = False
-        """The loop's thread does not come back: what it was asked for will not happen."""
-        self._trail: deque[tuple[float, float]] = deque(maxlen=TRAIL_POINTS)
-        self.settings: RigFile = machine.settings
-        self.simulated = machine.camera.simulated
+        self._watchdog = Watchdog(lambda: self._loop.deciding)
+        self._stops = self._stops_before_exchange = 0
+        self._lost = ""
+        self._trail = Trail()
         self.frame: Frame | None = None
         self.snapshot: Snapshot = self._loop.tick(None, machine.camera.now())
         self.selection = Selection()
-        self.runs: deque[Run] = deque(maxlen=RUNS_KEPT)
-        self.events: deque[Announcement] = deque(maxlen=EVENTS_KEPT)
-        self._news: deque[tuple[str, Run]] = deque(maxlen=EVENTS_KEPT)
+        self.runs = RunList()
+        self._log = EventLog()
         self.updates: Publisher[Snapshot] = Publisher()
-        self.announcements: Publisher[dict[str, Any]] = announcer()
         self.custom_trajectories = CustomTrajectories()
+
+    @property
+    def machine(self) -> Machine:
+        """The parts as they are now; another object after each exchange, so do not keep it."""
+        return self._machine
+
+    @property
+    def settings(self) -> RigFile:
+        return self._machine.settings
 
     @property
     def coils(self) -> CoilSet:
         return self._machine.coils
 
     @property
-    def camera_model(self) -> CameraModel:
-        return self._machine.camera_model
+    def faults(self) -> Faults | None:
+        """What is injected into a simulated rig; None on a real one."""
+        return self._machine.faults
 
     @property
-    def body_height(self) -> float:
-        """Height of the robot's top above the plate, m."""
-        return self._machine.body_height
+    def events(self) -> Sequence[Announcement]:
+        """What has happened, oldest first."""
+        return self._log.entries
 
     @property
-    def tracker(self) -> Any:
-        return self._machine.tracker
+    def announcements(self) -> Publisher[dict[str, Any]]:
+        """What clients are told as it comes: events, runs, changes of the selection and of the rig."""
+        return self._log.messages
+
+    @property
+    def hangs(self) -> bool:
+        """The loop's thread does not come back."""
+        return self._thread.hangs
 
     @property
     def failure(self) -> BaseException | None:
@@ -105,50 +118,64 @@ class Rig:
 
     async def start(self) -> None:
         """Open the link and start the loop."""
-        await self._on_thread(self._machine.open)
+        await self._thread.begin(self._machine.open)
         self._task = asyncio.create_task(self._run(), name="control loop")
 
     async def stop(self) -> None:
         """Zero the coils, end the loop and close everything; safe to call twice."""
-        self._machine.stop_coils()
+        self.stop_coils()
         self.updates.close()
         self.announcements.close()
         if self._task is not None:
             self._task.cancel()
             with contextlib.suppress(asyncio.CancelledError):
                 await self._task
+        with contextlib.suppress(Refused):
+            async with self._thread.turn(LAST_TURN):
+                await asyncio.to_thread(self._close)
+                return
         await asyncio.to_thread(self._close)
 
     def stop_coils(self) -> None:
         """Zero now; for signal handlers."""
+        self._stops += 1
         self._machine.stop_coils()
 
     def _close(self) -> None:
         self._machine.camera.close()
-        self._thread.shutdown(wait=not self.hangs, cancel_futures=True)
+        self._thread.shutdown()
         self._machine.close()
 
     async def _run(self) -> None:
         try:
             while True:
-                tick = asyncio.get_running_loop().run_in_executor(self._thread, self._one_tick)
-                hang = await self._watchdog.wait(tick)
-                if hang is not None:
-                    self._hang(hang)
-                self.snapshot = await tick
-                self.hangs = False
-                self._tell()
+                async with self._thread.turn():
+                    await self._step()
         except asyncio.CancelledError:
             raise
         except BaseException as error:
             self._fail(error)
             raise
 
+    async def _step(self) -> None:
+        if self._lost:
+            await asyncio.sleep(FRAME_TIMEOUT)
+            return
+        tick = self._thread.begin(self._one_tick)
+        hang = await self._watchdog.wait(tick)
+        if hang is not None:
+            self._hang(hang)
+        self.snapshot = await tick
+        self._thread.hangs = False
+        self._tell()
+
     def _fail(self, error: BaseException) -> None:
         """The loop is broken for good: zero current, and say so to everybody who watches."""
         self._machine.stop_coils()
         log.exception("the control loop failed")
-        reason = f"the control loop failed ({error!r}); restart pivotrig"
+        self._show_fault(f"the control loop failed ({error!r}); restart pivotrig")
+
+    def _show_fault(self, reason: str) -> None:
         self.snapshot = replace(self.snapshot, rig=RigState.FAULT, reason=reason)
         self.updates.publish(self.snapshot)
 
@@ -156,20 +183,13 @@ class Rig:
         """The loop does not come back: zero current, and say so; a loop that does come back latches the same."""
         self._loop.estop(hang.code, hang.reason)
         log.error("%s", hang.reason)
-        self.hangs = True
+        self._thread.hangs = True
         if self.snapshot.run is not None:
-            self._end_hung_run(self.snapshot.run.id, hang.reason)
+            self.runs.abort(self.snapshot.run.id, hang.reason)
         self.snapshot = stopped(self.snapshot, hang)
-        announcement = Announcement(self.snapshot.time, "error", hang.code, hang.reason)
-        self.events.append(announcement)
-        self.announcements.publish(_event_message(announcement))
+        self.announce("error", hang.code, hang.reason)
+        self._log.tell_runs(self.runs.take_news())
         self.updates.publish(self.snapshot)
-
-    def _end_hung_run(self, id: str, reason: str) -> None:
-        for index, run in enumerate(self.runs):
-            if run.id == id:
-                self.runs[index] = replace(run, state=RunState.ABORTED, reason=reason)
-                self._announce_run(RunState.ABORTED.value, self.runs[index])
 
     def _one_tick(self) -> Snapshot:
         frame = self._machine.camera.read(FRAME_TIMEOUT)
@@ -177,59 +197,39 @@ class Rig:
             self.frame = frame
         return self._loop.tick(frame, self._machine.camera.now())
 
-    async def _on_thread(self, work: Callable[[], T]) -> T:
-        return await asyncio.get_running_loop().run_in_executor(self._thread, work)
-
     # News ----------------------------------------------------------------------------------------
 
     def _tell(self) -> None:
         """Publish the newest snapshot, and what the loop has announced since the last one."""
-        if self.snapshot.pose is not None and self.snapshot.tick % TRAIL_EVERY == 0:
-            self._trail.append((self.snapshot.pose.x, self.snapshot.pose.y))
+        self._trail.follow(self.snapshot)
         self.updates.publish(self.snapshot)
         for announcement in self._loop.take_announcements():
-            self.events.append(announcement)
-            self.announcements.publish(_event_message(announcement))
-        while self._news:
-            self._announce_run(*self._news.popleft())
+            self._log.add(announcement)
         for ended in self._loop.take_ended():
-            self._record_end(ended)
+            self.runs.end(ended)
+        self._log.tell_runs(self.runs.take_news())
 
-    def _record_end(self, ended: Ended) -> None:
-        for index, run in enumerate(self.runs):
-            if run.id == ended.id:
-                done = replace(run, state=ended.state, reason=ended.reason, metrics=ended.metrics)
-                self.runs[index] = done
-                self._announce_run(ended.state.value, done)
-                return
-
-    def _announce_run(self, event: str, run: Run) -> None:
-        self.announcements.publish({"type": "run", "event": event, "run": run_json(run)})
+    def announce(self, severity: str, code: str, message: str) -> None:
+        """Put something into the event log and tell everybody who watches."""
+        self._log.add(Announcement(self.snapshot.time, severity, code, message))
 
     # Requests ------------------------------------------------------------------------------------
 
     async def _ask(self, request: Callable[[], T]) -> T:
         """Carry a request out between two ticks and publish what became of it; raises `Refused`."""
-        if self.failure is not None:
+        if self.failure is not None or self._lost:
             raise Refused(self.snapshot.reason)
-        answer = await self._unless_it_hangs(request)
-        self.snapshot = await self._on_thread(self._look_again)
+        answer = await self._thread.call(request, lambda: self.snapshot.reason)
+        self.snapshot = await self._thread.begin(self._look_again)
         self._tell()
         return answer
 
-    async def _unless_it_hangs(self, request: Callable[[], T]) -> T:
-        """The answer of the rig's thread; raises `Refused` when that does not come back."""
-        if self.hangs:
-            raise Refused(self.snapshot.reason)
-        answer = asyncio.get_running_loop().run_in_executor(self._thread, request)
-        while not (await asyncio.wait({answer}, timeout=STALL))[0]:
-            if self.hangs:
-                answer.cancel()
-                raise Refused(self.snapshot.reason)
-        return answer.result()
-
     def _look_again(self) -> Snapshot:
         return self._loop.tick(None, self._machine.camera.now())
+
+    async def between_ticks(self, work: Callable[[], T]) -> T:
+        """Do something to the rig's parts on the thread that owns them; raises `Refused` when that hangs."""
+        return await self._ask(work)
 
     async def select(self, selection: Selection) -> None:
         """Choose what the next run uses; raises `OutsideWorkspace` and what a bad choice raises."""
@@ -238,21 +238,24 @@ class Rig:
         self.selection = selection
         self.announcements.publish({"type": "rig", "selection": selection_json(selection)})
 
-    async def arm(self) -> None:
+    async def arm(self, *, consent: bool = False) -> None:
+        """consent: the operator agrees that current flows through real coils."""
         gait = self.selection.gait
-        await self._ask(lambda: self._loop.arm(gait))
+        await self._ask(lambda: self._loop.arm(gait, consent=consent))
 
     async def disarm(self) -> None:
-        await self._ask(self._loop.disarm)
+        await self._ask(lambda: self._loop.disarm())
 
     async def estop(self) -> None:
         """Zero at once, then latch; always succeeds, and soon, even where the loop hangs."""
+        self._stops += 1
         self._loop.estop()
         with contextlib.suppress(TimeoutError, Refused):
-            await asyncio.wait_for(asyncio.shield(self._ask(self._loop.latch_estop)), ESTOP_ANSWER)
+            latch = self._ask(lambda: self._loop.latch_estop())
+            await asyncio.wait_for(asyncio.shield(latch), ESTOP_ANSWER)
 
     async def reset(self) -> None:
-        await self._ask(self._loop.reset)
+        await self._ask(lambda: self._loop.reset())
 
     async def jog(self, jog: Jog) -> None:
         await self._ask(lambda: self._loop.jog(jog))
@@ -260,19 +263,18 @@ class Rig:
     async def start_run(self, request: RunRequest) -> Run:
         run = Run(new_id(), request, RunState.RUNNING, datetime.now(UTC))
         await self._ask(lambda: self._start(run))
-        return self._run_of(run.id)
+        return self.runs.of(run.id)
 
     def _start(self, run: Run) -> None:
         """On the rig's thread: the run is listed from the instant at which it may also end."""
         self._loop.start(run.id, run.request)
         self._trail.clear()
-        self.runs.appendleft(run)
-        self._news.append(("started", run))
+        self.runs.start(run)
 
     async def change_run(self, change: Callable[[Selection], Selection]) -> Run:
         """`change` makes the new selection of the old one, so that two changes at once both count."""
         id = await self._ask(lambda: self._change(change))
-        return self._run_of(id)
+        return self.runs.of(id)
 
     def _change(self, change: Callable[[Selection], Selection]) -> str:
         if self.snapshot.run is None or not self.runs or self.runs[0].state is not RunState.RUNNING:
@@ -280,21 +282,75 @@ class Rig:
         run = self.runs[0]
         selection = change(run.request.selection)
         self._loop.change(selection)
-        self.runs[0] = replace(run, request=replace(run.request, selection=selection))
-        self._news.append(("changed", self.runs[0]))
+        self.runs.change_newest(selection)
         return run.id
 
     async def stop_run(self) -> None:
-        await self._ask(self._loop.stop_run)
+        await self._ask(lambda: self._loop.stop_run())
 
     async def pause_run(self) -> None:
-        await self._ask(self._loop.pause)
+        await self._ask(lambda: self._loop.pause())
 
     async def resume_run(self) -> None:
-        await self._ask(self._loop.resume)
+        await self._ask(lambda: self._loop.resume())
 
-    def _run_of(self, id: str) -> Run:
-        return next(run for run in self.runs if run.id == id)
+    @property
+    def is_lost(self) -> bool:
+        """No machine is open: an exchange failed both ways."""
+        return bool(self._lost)
+
+    # Other settings ------------------------------------------------------------------------------
+
+    def take_settings(self, settings: RigFile) -> None:
+        """Settings that no part of the machine has been built from, such as the rig's name."""
+        self._machine.settings = settings
+        self._announce_settings()
+
+    async def rebuild(self, settings: RigFile) -> None:
+        """Put a machine with other settings in this one's place, between two ticks.
+
+        Raises `Refused`, and then the rig is as it was, unless it is `NoMachine`.
+        """
+        await asyncio.shield(asyncio.ensure_future(self._rebuild(settings)))
+
+    async def _rebuild(self, settings: RigFile) -> None:
+        if self.hangs:
+            raise Refused(self.snapshot.reason)
+        async with self._thread.turn(TURN_WITHIN):
+            try:
+                exchange = await self._thread.begin(lambda: self._exchange(settings))
+            except NoMachine as error:
+                self._lose_machine(str(error))
+                raise
+            self._lost = ""
+            self.snapshot = await self._thread.begin(self._look_again)
+        self._tell()
+        self._announce_settings()
+        if exchange.failure is not None:
+            reason = f"the changed rig cannot be opened, and is as it was: {exchange.failure}"
+            self.announce("warn", "rig", reason)
+            raise Refused(reason)
+
+    def _lose_machine(self, reason: str) -> None:
+        self._lost = reason
+        self.announce("error", "rig", reason)
+        self._show_fault(reason)
+
+    def _exchange(self, settings: RigFile) -> Exchange:
+        """On the rig's thread, where nothing can arm it meanwhile."""
+        if not self._lost:
+            require_disarmed(self._loop.state)
+            self._stops_before_exchange = self._stops
+        done = exchange(self._machine, settings, self._build)
+        self._machine, self._loop = done.machine, done.machine.loop
+        if self._stops != self._stops_before_exchange:  # a stop that found no machine holds for the new one
+            self._loop.estop()
+        self.frame = None
+        self._trail.clear()
+        return done
+
+    def _announce_settings(self) -> None:
+        self.announcements.publish({"type": "rig", "settings": self.settings.to_public()})
 
     # What there is to draw -----------------------------------------------------------------------
 
@@ -302,40 +358,8 @@ class Rig:
         """(n, 2) points of the path that is walked or selected, m."""
         running = self.snapshot.run is not None and self.runs
         selection = self.runs[0].request.selection if running else self.selection
-        return _path_points(selection.trajectory)
+        return points_of(Selection(trajectory=selection.trajectory).build_trajectory())
 
     def trail(self) -> NDArray[np.float64]:
         """(n, 2) recent estimates, m, oldest first."""
-        return np.array(self._trail, dtype=float).reshape(-1, 2)
-
-
-class CustomTrajectories:
-    """Paths that somebody drew or sent, by name; kept for this session."""
-
-    def save(
-        self, name: str, points: NDArray[np.float64], closed: bool, speed: float, kind: Smoothing
-    ) -> None:
-        """Keep a path ((n, 2) points, m; m/s) under a free name; raises `Refused` when there are too many."""
-        try:
-            save_path(name, points, closed, speed, kind)
-        except TooManyPaths as error:
-            raise Refused(str(error)) from error
-
-
-def _path_points(choice: Choice) -> NDArray[np.float64]:
-    return points_of(Selection(trajectory=choice).build_trajectory())
-
-
-def _event_message(announcement: Announcement) -> dict[str, Any]:
-    return {
-        "type": "event",
-        "time_s": round(announcement.time, 4),
-        "severity": announcement.severity,
-        "code": announcement.code,
-        "message": announcement.message,
-    }
-
-
-def new_id() -> str:
-    """Sorts by time, reads well, never repeats."""
-    return f"{datetime.now(UTC):%Y%m%d-%H%M%S}-{secrets.token_hex(2)}"
+        return self._trail.points()

@@ -74,9 +74,9 @@ def start_viser() -> viser.ViserServer:
 
 
 def label_place(pair: CoilPair) -> Vector:
-    """On the rim of the pair's second loop, where the first view shows it, scene units."""
-    x, y, z = (value * CM for value in pair.centres[1])
-    radius = 0.5 * pair.diameter * CM
+    """On the rim of the pair's second loop, where the first view shows it, in the coils' frame, m."""
+    x, y, z = pair.centres[1]
+    radius = 0.5 * pair.diameter
     return {"x": (x, radius, z), "y": (radius, y, z), "z": (-radius, y, z)}[pair.axis]
 
 
@@ -84,14 +84,24 @@ class Scene:
     """All nodes of the scene and how they follow a snapshot. It blocks: use it off the event loop."""
 
     def __init__(self, geometry: SceneGeometry) -> None:
-        self._geometry = geometry
         self.server = start_viser()
+        self._first_view()
+        self._build(geometry)
+
+    def _build(self, geometry: SceneGeometry) -> None:
+        self._geometry = geometry
         self._arrows = FieldArrows(geometry.coils, geometry.workspace)
-        self._look()
+        self._light()
         self._furniture()
         self._robot_nodes()
         self._moving_nodes()
         self._drawn: dict[str, NDArray[np.float64]] = {}
+
+    def rebuild(self, geometry: SceneGeometry) -> None:
+        """Draw another rig in place of this one; who looks keeps the view."""
+        with self.server.atomic():
+            self.server.scene.reset()
+            self._build(geometry)
 
     @property
     def port(self) -> int:
@@ -108,11 +118,14 @@ class Scene:
             self._show_line("path", path)
             self._show_line("trail", trail)
 
-    def _look(self) -> None:
-        scene, camera = self.server.scene, self.server.initial_camera
+    def _light(self) -> None:
+        scene = self.server.scene
         scene.configure_environment_map(None)
         scene.configure_default_lights(enabled=True, cast_shadow=False)
         scene.add_light_ambient("/ambient", intensity=1.6)
+
+    def _first_view(self) -> None:
+        camera = self.server.initial_camera
         camera.position = (9.0, -43.0, 33.0)
         camera.look_at = (0.0, 0.0, -1.0)
         camera.up = (0.0, 0.0, 1.0)
@@ -129,10 +142,11 @@ class Scene:
 
     def _coil_pair(self, pair: CoilPair) -> None:
         name = f"/coils/{pair.axis}"
-        rings = ring_segments(pair) * CM
+        rings = self._geometry.coils.registration.to_workspace(ring_segments(pair)) * CM
         self.server.scene.add_line_segments(name, rings, PAIR_COLOURS[pair.axis], thickness=0.25)
         label = f"{pair.axis} coils, {pair.diameter * 1e3:.0f} mm"
-        self.server.scene.add_label(f"{name}/label", label, position=label_place(pair))
+        place = self._geometry.coils.registration.to_workspace(np.array(label_place(pair))) * CM
+        self.server.scene.add_label(f"{name}/label", label, position=tuple(place))
 
     def _robot_nodes(self) -> None:
         scene = self.server.scene

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import asyncio
 import logging
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -28,8 +29,10 @@ PATH_EVERY = 10
 class SceneFeed:
     """The scene's life: Viser starts with the application, is fed while it has viewers, and ends with it."""
 
-    def __init__(self, rig: Rig, geometry: SceneGeometry) -> None:
+    def __init__(self, rig: Rig, geometry: Callable[[], SceneGeometry]) -> None:
+        """geometry: of the rig as it is now; asked for again when its settings have changed."""
         self._rig = rig
+        self._drawn_settings = rig.settings
         self._geometry = geometry
         self._thread = ThreadPoolExecutor(1, thread_name_prefix="scene")
         self._watched = asyncio.Event()
@@ -41,7 +44,7 @@ class SceneFeed:
 
     async def start(self) -> None:
         loop = asyncio.get_running_loop()
-        self.scene = scene = await loop.run_in_executor(self._thread, Scene, self._geometry)
+        self.scene = scene = await loop.run_in_executor(self._thread, Scene, self._geometry())
         self._task = asyncio.create_task(self._feed(scene), name="scene feed")
 
     async def stop(self) -> None:
@@ -80,8 +83,14 @@ class SceneFeed:
 
     async def _show_next(self, scene: Scene, mailbox: Mailbox[Snapshot]) -> None:
         snapshot = await mailbox.get()
+        if self._drawn_settings is not self._rig.settings:
+            self._drawn_settings = self._rig.settings
+            await self._on_thread(scene.rebuild, self._geometry())
+            self._updates = 0
         if self._updates % PATH_EVERY == 0:
             self._path = self._rig.reference_points()
         self._updates += 1
-        drawn = snapshot, self._path, self._rig.trail()
-        await asyncio.get_running_loop().run_in_executor(self._thread, scene.show, *drawn)
+        await self._on_thread(scene.show, snapshot, self._path, self._rig.trail())
+
+    async def _on_thread(self, draw: Callable[..., None], *what: Any) -> None:
+        await asyncio.get_running_loop().run_in_executor(self._thread, draw, *what)

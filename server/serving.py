@@ -9,19 +9,24 @@ import signal
 import socket
 import sys
 import webbrowser
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from types import FrameType
 from typing import NoReturn
 
-import platformdirs
 import uvicorn
 
 from control.link.conversion import LinkError
 from server.app import create_app, end_streams
-from server.assembly import Machine, build_machine
+from server.assembly import build_machine
 from server.door import MESSAGE_LIMIT
 from server.rig import Rig
+from server.rig_changes import RigChanges
+from server.rig_file import RigStore
 from server.settings import RigFile
+from server.signals import ESTOP, handled
 from vision.cameras import CameraError
 
 GRACE = 2
@@ -33,23 +38,36 @@ TURN = 0.0002
 be longer than the whole way from a frame to its command."""
 
 
+@dataclass(frozen=True, slots=True)
+class Place:
+    """Where to listen; port 0 picks a free one."""
+
+    host: str
+    port: int
+
+
 class ServeError(Exception):
     """The server cannot start; the text says why and what to do."""
 
 
-def serve_rig(settings: RigFile, host: str, port: int, data: Path | None, open_browser: bool) -> None:
-    """Serve until a signal comes; raises `ServeError`."""
+def serve_rig(
+    store: RigStore, as_run: Callable[[RigFile], RigFile], place: Place, data: Path, open_browser: bool
+) -> None:
+    """Serve until a signal comes; raises `ServeError`. as_run: makes of the file's rig the one that runs."""
     _prepare_data(data)
+    host, port = place.host, place.port
     listener = _listen(host, port)
     sys.setswitchinterval(TURN)
+    build = partial(build_machine, realtime=True, data=data)
     try:
-        machine = build_machine(settings, realtime=True)
+        machine = build(as_run(store.settings))
     except (ValueError, LinkError, CameraError, OSError) as error:
         listener.close()
         raise ServeError(str(error)) from error
     address = _address(listener)
-    server = _Server(machine, address, open_browser)
-    with listener:
+    rig = Rig(machine, build)
+    server = _Server(rig, RigChanges(rig, store, as_run), address, open_browser)
+    with listener, handled({ESTOP: server.handle_estop, signal.SIGHUP: server.handle_exit}):
         server.run(sockets=[listener])
     if server.failure is not None:
         raise ServeError(f"the rig could not be opened: {server.failure}")
@@ -66,12 +84,12 @@ def _leave(reason: str) -> NoReturn:
 class _Server(uvicorn.Server):
     """uvicorn, but a signal zeroes the coils before anything else, and readiness is announced."""
 
-    def __init__(self, machine: Machine, address: str, open_browser: bool) -> None:
-        self._rig = Rig(machine)
+    def __init__(self, rig: Rig, changes: RigChanges, address: str, open_browser: bool) -> None:
+        self._rig = rig
         self._address = address
         self._open_browser = open_browser
         self.failure: BaseException | None = None
-        self._application = create_app(self._rig)
+        self._application = create_app(rig, changes=changes)
         config = uvicorn.Config(
             self._application,
             log_level="warning",
@@ -93,6 +111,10 @@ class _Server(uvicorn.Server):
         self.force_exit = self.should_exit and sig == signal.SIGINT
         self.should_exit = True
 
+    def handle_estop(self, _number: int, _frame: FrameType | None) -> None:
+        """The coils are off and stay off until a reset; everything else goes on."""
+        self._rig.stop_coils()
+
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
         """Streams are told to end; else uvicorn would wait for them until its patience is over."""
         end_streams(self._application)
@@ -108,15 +130,13 @@ class _Server(uvicorn.Server):
             webbrowser.open(self._address)
 
 
-def _prepare_data(data: Path | None) -> Path:
-    folder = data or Path(platformdirs.user_data_dir("pivotrig"))
+def _prepare_data(folder: Path) -> None:
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise ServeError(
             f"cannot use the data folder {folder}: {error.strerror}; choose another with --data"
         ) from error
-    return folder
 
 
 def _listen(host: str, port: int) -> socket.socket:

@@ -6,14 +6,18 @@ The defaults are the paper's rig, simulated (paper, section 6; what is assumed t
 from __future__ import annotations
 
 import math
-import tomllib
-from pathlib import Path
+from collections.abc import Callable
 from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
+from control.simulation.wiring import Wiring
+
 MM = 1e-3
 MS = 1e-3
+
+FORMAT = 1
+"""Version of the rig file's layout that this program reads and writes."""
 
 Positive = Annotated[float, Field(gt=0.0)]
 Sigma = Annotated[float, Field(gt=0.0, le=1000.0)]
@@ -21,8 +25,7 @@ PerCoil = Annotated[list[Annotated[float, Field(gt=0.0, le=30.0)]], Field(min_le
 """A VNH5019 carries 30 A for a moment and 12 A for long."""
 
 
-class RigFileError(ValueError):
-    """A rig file that cannot be used; the text says where and why."""
+Lead = Literal["x", "y", "z", "-x", "-y", "-z"]
 
 
 class Section(BaseModel):
@@ -40,12 +43,32 @@ class Robot(Section):
     """2 m B / (W L): magnet torque over weight; decides how far the free end lifts."""
 
 
+SenseGain = Annotated[float, Field(ge=17.5, le=43.5)]
+"""The driver's 34.88 mA per count of the UNO's ADC is known to be off by up to 25 %."""
+
+
 class Coil(Section):
     diameter_mm: Positive
     separation_mm: Positive
     turns: Annotated[int, Field(gt=0)]
     resistance_ohm: Positive
     inductance_mH: Positive
+    sense_mA_per_count: tuple[SenseGain, SenseGain] = (34.88, 34.88)
+    """Of the bridge's current sense, for positive and for negative current."""
+    field_gain: Annotated[float, Field(ge=0.2, le=5.0)] = 1.0
+    """Measured field over the geometry's, from `pivotrig calibrate coils`."""
+
+
+class RegistrationSection(Section):
+    """Where the coils stand in the camera's workspace, from `pivotrig calibrate registration`."""
+
+    x_mm: Annotated[float, Field(ge=-200.0, le=200.0)] = 0.0
+    """The coils' centre."""
+    y_mm: Annotated[float, Field(ge=-200.0, le=200.0)] = 0.0
+    rotation_deg: Annotated[float, Field(ge=-360.0, le=360.0)] = 0.0
+    """From the workspace's x axis to that of the x coils, counter-clockwise."""
+    magnet_reversed: bool = False
+    """The magnet's north is at end B."""
 
 
 class Coils(Section):
@@ -55,17 +78,39 @@ class Coils(Section):
     y: Coil = Coil(diameter_mm=305, separation_mm=190, turns=248, resistance_ohm=2.0, inductance_mH=55)
     z: Coil = Coil(diameter_mm=225, separation_mm=110, turns=154, resistance_ohm=1.5, inductance_mH=14)
     supply_V: Annotated[float, Field(gt=0.0, le=60.0)] = 24.0
+    supply_full_scale_V: Annotated[float, Field(ge=0.0, le=65.0)] = 55.0
+    """The supply that fills the board's ADC: 5 V times the divider on A5; 0 where none is wired."""
     allocation: Literal["local", "centre"] = "local"
     """local: field and tilt hold over the whole plate; centre: the paper's, exact at the centre only."""
+    field_source: Annotated[str, Field(max_length=120)] = "geometry"
+    """Where the field gains come from: the geometry, or the date and the residual of a measurement."""
+    registration: RegistrationSection = RegistrationSection()
 
 
 class LimitsSection(Section):
+    """What one coil, all of them, the robot and its field may do; what is heard of them is held against it."""
+
     current_A: PerCoil = [8.0, 8.0, 8.0]
+    power_W: Annotated[float, Field(gt=0.0, le=10_000.0)] = 300.0
+    """Heat of all coils together: what a 24 V supply of 12.5 A gives (assumed)."""
+    current_slew_A_s: Annotated[
+        list[Annotated[float, Field(gt=0.0, le=1e6)]], Field(min_length=3, max_length=3)
+    ] = [
+        192.0,
+        436.0,
+        1714.0,
+    ]
+    """V / L of each coil at 24 V: no bridge of that supply changes its current faster."""
+    continuous_A: PerCoil = [9.0, 7.9, 6.1]
+    """What each coil bears for ever, 40 K above the room; estimated from its size and wire."""
+    heat_time_constant_s: Annotated[
+        list[Annotated[float, Field(ge=1.0, le=1e6)]], Field(min_length=3, max_length=3)
+    ] = [2700.0, 2100.0, 1300.0]
     field_mT: Annotated[float, Field(gt=0.0, le=50.0)] = 15.0
     rate_deg_s: Annotated[float, Field(gt=0.0, le=3600.0)] = 360.0
     workspace_mm: Annotated[float, Field(gt=0.0, le=1000.0)] = 120.0
     soft_margin_mm: Annotated[float, Field(ge=0.0, le=100.0)] = 2.0
-    """How far outside the workspace the centre may be before the page warns."""
+    """How far outside the workspace the robot's centre may be driven."""
     hard_margin_mm: Annotated[float, Field(ge=0.0, le=100.0)] = 8.0
     """How far outside the workspace the coils are switched off."""
 
@@ -96,6 +141,7 @@ class CameraSection(Section):
 
 class LinkSection(Section):
     port: str = "sim://"
+    """A device, best by its lasting name under /dev/serial/by-id; "auto" is the one board that is plugged in."""
     baud: Annotated[int, Field(ge=9600, le=2_000_000)] = 500_000
     dead_man_ms: Annotated[int, Field(ge=20, le=500)] = 200
     time_to_live_ms: Annotated[int, Field(ge=20, le=500)] = 150
@@ -104,6 +150,8 @@ class LinkSection(Section):
     """Elevation ramp at a pivot switch; the heading is held meanwhile."""
     field_ramp_ms: Annotated[int, Field(ge=1, le=10_000)] = 300
     """From zero to 10 mT at arming."""
+    traffic_log: bool = False
+    """Every byte both ways goes to link-traffic.log in the data folder: at most 80 MiB."""
 
 
 class VisionSection(Section):
@@ -158,8 +206,9 @@ class SimulationSection(Section):
 
     plant: Literal["slip", "noslip"] = "slip"
     seed: Annotated[int, Field(ge=0, le=2**31 - 1)] = 1
-    board: str = Field(default="twin", pattern=r"^(twin|tcp://\S+)$")
-    """twin: the board's twin in this process; tcp://HOST:PORT: another board behind its lock-step port."""
+    board: str = Field(default="twin", pattern=r"^(twin|emulated|tcp://\S+)$")
+    """twin: the board's twin in this process; emulated: the compiled firmware in an emulator, which is built and
+    started; tcp://HOST:PORT: another board behind its lock-step port."""
     latency_ms: Annotated[float, Field(ge=0.0, le=120.0)] = 35.0
     """The rig holds when frames get older than 150 ms."""
     noise: Annotated[float, Field(ge=0.0, le=50.0)] = 3.0
@@ -168,11 +217,24 @@ class SimulationSection(Section):
     start_x_mm: Annotated[float, Field(ge=-60.0, le=60.0)] = 0.0
     start_y_mm: Annotated[float, Field(ge=-60.0, le=60.0)] = -42.0
     start_heading_deg: Annotated[float, Field(ge=-360.0, le=360.0)] = 90.0
+    wiring: tuple[Lead, Lead, Lead] = ("x", "y", "z")
+    """The pairs that the three bridges truly drive; -x: with swapped leads."""
+    field_gain: PerCoil | None = None
+    """The true gains of the fields x, y, z; without it those that the rig file gives the coils."""
+    registration: RegistrationSection | None = None
+    """Where the coils truly stand; without it where the rig file says."""
+
+    @model_validator(mode="after")
+    def _each_pair_has_one_bridge(self) -> SimulationSection:
+        Wiring(self.wiring)
+        return self
 
 
 class RigFile(Section):
     """One rig."""
 
+    version: Literal[1] = FORMAT
+    """Of the file's layout; a file without it has the first."""
     name: Annotated[str, Field(min_length=1, max_length=80)] = "The paper's rig"
     robot: Robot = Robot()
     coils: Coils = Coils()
@@ -214,27 +276,17 @@ class RigFile(Section):
         return RigFile.model_validate(whole)
 
 
-def load_rig_file(path: Path) -> RigFile:
-    """Read and validate a rig file; raises `RigFileError` naming every wrong value."""
-    try:
-        values = tomllib.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise RigFileError(f"cannot read the rig file {path}: {error.strerror or error}") from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise RigFileError(f"the rig file {path} is not TOML: {error}") from error
-    try:
-        return RigFile.model_validate(values)
-    except ValidationError as error:
-        raise RigFileError(f"the rig file {path} cannot be used:\n{in_words(error)}") from error
+def _nowhere(_: tuple[str | int, ...]) -> str:
+    return ""
 
 
-def in_words(error: ValidationError) -> str:
-    """One line for each wrong value: where it is, what is wrong with it, what was given."""
+def in_words(error: ValidationError, place: Callable[[tuple[str | int, ...]], str] = _nowhere) -> str:
+    """One line for each wrong value: its name, what is wrong with it, what was given, and where `place` finds it."""
     lines = []
     for problem in error.errors(include_url=False):
         where = ".".join(str(part) for part in problem["loc"]) or "the whole file"
         given = "" if problem["type"] in ("missing", "extra_forbidden") else f" (given: {problem['input']!r})"
-        lines.append(f"  {where}: {problem['msg']}{given}")
+        lines.append(f"  {where}: {problem['msg']}{given}{place(problem['loc'])}")
     return "\n".join(lines)
 
 

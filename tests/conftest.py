@@ -19,6 +19,10 @@ GRACE = 2.0
 """A thread that is ending may take this long, s."""
 
 
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption("--board", metavar="PORT", help="also put a real board, on this port, to the contract's tests")
+
+
 @pytest.fixture(autouse=True)
 def no_thread_is_left_behind(request: pytest.FixtureRequest) -> Iterator[None]:
     before = set(threading.enumerate())
@@ -38,6 +42,14 @@ def _alive(before: set[threading.Thread]) -> list[threading.Thread]:
 def _is_shared(thread: threading.Thread) -> bool:
     """asyncio's default executor and playwright's driver live as long as the session."""
     return thread.name.startswith(("asyncio_", "AnyIO worker thread", "Dummy"))
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _nobody_s_own_data_is_used(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    """The rig file that the person who tests has saved is no part of the tests."""
+    with pytest.MonkeyPatch.context() as environment:
+        environment.setenv("XDG_DATA_HOME", str(tmp_path_factory.mktemp("data")))
+        yield
 
 
 @pytest.fixture(scope="session")

@@ -8,7 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from server.settings import RigFile, load_rig_file
+from server.rig_file import load_rig_file
+from server.settings import RigFile
 from tests.processes import served
 
 ROOT = Path(__file__).parent.parent

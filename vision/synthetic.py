@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import random
 import threading
 import time
 from collections import deque
@@ -43,6 +44,7 @@ class Pace(Protocol):
     def begin(self, world_time: float) -> None: ...
     def now(self, world_time: float) -> float: ...
     def wait_until(self, rig_time: float) -> None: ...
+    def jump(self, duration: float) -> None: ...
     def close(self) -> None: ...
 
 
@@ -57,6 +59,9 @@ class AsFastAsItGoes:
         return world_time
 
     def wait_until(self, rig_time: float) -> None: ...
+
+    def jump(self, duration: float) -> None:
+        """The world's time is the rig's: it jumps when the world has been moved on."""
 
     def close(self) -> None: ...
 
@@ -87,6 +92,11 @@ class RealTime:
         self._closed.wait(max(0.0, rig_time - self._clock()))
         self._looked = max(self._looked, rig_time)
 
+    def jump(self, duration: float) -> None:
+        """It is later than it was, by so much (s): the computer has slept, or its clock was put forward."""
+        self._stood -= duration
+        self._looked += duration
+
     def close(self) -> None:
         self._closed.set()
 
@@ -105,12 +115,18 @@ class Disturbance:
 
     hidden: the robot is not in the picture.  frozen: every frame repeats the last picture, with new times.
     unplugged: no frames.  extra_latency: added to the scene's latency, s.
+    lost: share of the frames that never arrive.  mirrored: left is right.  cropped: half as wide and high.
+    timeless: the capture time is NaN.
     """
 
     hidden: bool = False
     frozen: bool = False
     unplugged: bool = False
     extra_latency: float = 0.0
+    lost: float = 0.0
+    mirrored: bool = False
+    cropped: bool = False
+    timeless: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,6 +156,7 @@ class SyntheticCamera:
         self._next_index = 0
         self._waiting: deque[Exposure] = deque(maxlen=LONGEST_QUEUE)
         self._last_image: NDArray[np.uint8] | None = None
+        self._chance = random.Random(self._scene.seed)
         self._closed = False
         self.size = optics.size
         self.rate = self._scene.rate
@@ -160,7 +177,20 @@ class SyntheticCamera:
             return None
         image = self._picture(exposure)
         self._pass_until(self._due(exposure.captured_at))
-        return None if self._closed else Frame(image, exposure.captured_at, exposure.index)
+        if self._closed:
+            return None
+        captured_at = math.nan if self.disturbance.timeless else exposure.captured_at
+        return Frame(self._deformed(image), captured_at, exposure.index)
+
+    def pass_time(self, duration: float) -> None:
+        """Lets rig time pass (s) without a picture: whoever should read is busy with something else."""
+        self._pass_until(self.now() + duration)
+
+    def jump(self, duration: float) -> None:
+        """Puts the rig's clock forward (s); the world has gone on meanwhile."""
+        later = self.now() + duration
+        self._pace.jump(duration)
+        self._expose_until(later)
 
     def close(self) -> None:
         """Ends a read that is waiting; later reads return None."""
@@ -181,7 +211,7 @@ class SyntheticCamera:
         self._expose_until(start)
         while len(self._waiting) > 1 and self._due(self._waiting[1].captured_at) <= start + SAME_TIME:
             self._waiting.popleft()
-        if not self._waiting and self._due(self._next_capture()) <= deadline + SAME_TIME:
+        while not self._waiting and self._due(self._next_capture()) <= deadline + SAME_TIME:
             self._pass_until(self._next_capture())
         if self._waiting and self._due(self._waiting[0].captured_at) <= deadline + SAME_TIME:
             return self._waiting.popleft()
@@ -213,6 +243,8 @@ class SyntheticCamera:
         if self.disturbance.unplugged:
             self._waiting.clear()
             return
+        if self._chance.random() < self.disturbance.lost:
+            return
         self._waiting.append(Exposure(self._next_index, captured_at, self._world.body()))
 
     def _picture(self, exposure: Exposure) -> NDArray[np.uint8]:
@@ -220,3 +252,8 @@ class SyntheticCamera:
             body = None if self.disturbance.hidden else exposure.body
             self._last_image = self._painter.paint(body, exposure.index)
         return self._last_image
+
+    def _deformed(self, image: NDArray[np.uint8]) -> NDArray[np.uint8]:
+        if self.disturbance.mirrored:
+            image = np.ascontiguousarray(image[:, ::-1])
+        return np.ascontiguousarray(image[::2, ::2]) if self.disturbance.cropped else image

@@ -1,6 +1,6 @@
 """Controllers: from the robot's pose and the reference to the pivot to stand on and the rate to swing at."""
 
-from control.controllers.controller import Controller, Decision, Situation, controllers
+from control.controllers.controller import Controller, Decision, Law, Situation, controllers
 from control.controllers.geometric import Geometric
 from control.controllers.gradient import Gradient
 from control.controllers.heading_hold import Hold
@@ -15,6 +15,7 @@ __all__ = [
     "Geometric",
     "Gradient",
     "Hold",
+    "Law",
     "Planner",
     "Sequence",
     "Situation",

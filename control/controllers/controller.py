@@ -56,17 +56,22 @@ class Decision:
     finished: bool = False
 
 
-class Controller(Protocol):
-    """Pure law: no clock, no I/O; whatever it remembers is its own."""
+class Law(Protocol):
+    """Pure: no clock, no I/O; whatever it remembers is its own."""
 
     name: str
+
+    def step(self, situation: Situation) -> Decision: ...
+
+
+class Controller(Law, Protocol):
+    """A law that can be chosen, with its parameters."""
+
     title: str
     summary: str
     Parameters: type[Parameters]
 
     def __init__(self, parameters: Any) -> None: ...
-
-    def step(self, situation: Situation) -> Decision: ...
 
 
 controllers: Registry[Controller] = Registry("controller")

@@ -16,6 +16,9 @@ from control.snapshot import Vector
 MOST_TILT = math.radians(60.0)
 """Steepest field that the board accepts, rad."""
 
+MOST_SUPPLY_SCALE = 65.0
+"""Full scale of the supply's divider, V: the wire's 16 bits of mV."""
+
 LONGEST_LIFETIME = 1.0
 """Longest time to live of one drive command, s."""
 
@@ -25,6 +28,13 @@ _SLEW = 256.0 * 1e6 / 1e3
 _ALLOCATION = messages.ALLOCATION_ONE * 1e3 / 1e6
 
 Matrix = tuple[Vector, Vector, Vector]
+Directions = tuple[float, float]
+"""A value for positive and one for negative current."""
+
+SENSE_GAIN = messages.SENSE_GAIN / 256e3
+"""Current of one count of the board's ADC as the driver's data sheet has it, A."""
+
+_DATA_SHEET = (SENSE_GAIN, SENSE_GAIN)
 
 
 class LinkError(Exception):
@@ -46,7 +56,9 @@ class Configuration:
 
     current_limits: A.  dead_man: longest life of a drive command, s.  ramp: time of a full elevation swing
     at a pivot switch, s.  field_slew: rate of the field's strength, T/s.  resistances: ohm.
-    inductances: H.  supply: V.  max_field: T.  max_rate: rad/s.  max_tilt: rad.
+    inductances: H.  supply: nominal, V.  max_field: T.  max_rate: rad/s.  max_tilt: rad.
+    sense_gains: A per ADC count, a coil each, for positive and for negative current.
+    supply_scale: the supply that would read 1024 counts, V; 0: it is not sensed, and taken to be nominal.
     """
 
     current_limits: Vector
@@ -59,6 +71,8 @@ class Configuration:
     max_field: float
     max_rate: float
     max_tilt: float
+    sense_gains: tuple[Directions, Directions, Directions] = (_DATA_SHEET, _DATA_SHEET, _DATA_SHEET)
+    supply_scale: float = 55.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,7 +101,8 @@ class Telemetry:
 
     received_at: rig clock, s.  board_time: since its boot, s.  heading: of the field, rad in [-pi, pi).
     elevation: of the field, rad, -pivot * tilt when settled.  currents, measured_currents: A.
-    duty: -1..1 of the supply.  supply: V.  good .. stale: the board's counters of received messages.
+    duty: -1..1 of the supply.  supply: V; 0 where it is not sensed but assumed to be nominal.
+    good .. stale: the board's counters of received messages.
     """
 
     received_at: float
@@ -101,6 +116,7 @@ class Telemetry:
     state: BoardState
     faults: tuple[str, ...]
     saturated: bool
+    supply_assumed: bool
     good: int
     bad: int
     refused: int
@@ -132,9 +148,7 @@ def binary_angle(angle: float) -> int:
 
 
 def configure_message(configuration: Configuration) -> messages.Configure:
-    for name in configuration.__dataclass_fields__:
-        _refuse_unless_positive(name, getattr(configuration, name))
-    _refuse_unless_within("max_tilt", configuration.max_tilt, 0.0, MOST_TILT, "rad")
+    _check_configuration(configuration)
     return messages.Configure(
         current_limits=_scaled(configuration.current_limits, 1e3),
         dead_man=_milliseconds(configuration.dead_man),
@@ -146,7 +160,27 @@ def configure_message(configuration: Configuration) -> messages.Configure:
         max_field=round(configuration.max_field * 1e6),
         max_rate=phase_rate(configuration.max_rate),
         max_tilt=binary_angle(configuration.max_tilt),
+        sense_gains=_gains(configuration.sense_gains),
+        supply_scale=round(configuration.supply_scale * 1e3),
     )
+
+
+def _check_configuration(configuration: Configuration) -> None:
+    for name in configuration.__dataclass_fields__:
+        value = getattr(configuration, name)
+        if name == "sense_gains":
+            _check_gains(configuration)
+        elif name != "supply_scale":
+            _refuse_unless_positive(name, value)
+    _refuse_unless_within("max_tilt", configuration.max_tilt, 0.0, MOST_TILT, "rad")
+    _refuse_unless_within("supply_scale", configuration.supply_scale, 0.0, MOST_SUPPLY_SCALE, "V")
+
+
+def _check_gains(configuration: Configuration) -> None:
+    low, high = (gain / 256e3 for gain in messages.SENSE_GAINS)
+    for coil, gains in enumerate(configuration.sense_gains, start=1):
+        for gain in gains:
+            _refuse_unless_within(f"sense gain of coil {coil}", gain, low, high, "A per count")
 
 
 def drive_message(command: DriveCommand, limits: Configuration) -> messages.Drive:
@@ -217,6 +251,11 @@ def _scaled(values: Vector, scale: float) -> messages.Triple:
     return round(x * scale), round(y * scale), round(z * scale)
 
 
+def _gains(gains: tuple[Directions, Directions, Directions]) -> messages.Six:
+    (a, b), (c, d), (e, f) = ((round(up * 256e3), round(down * 256e3)) for up, down in gains)
+    return a, b, c, d, e, f
+
+
 def telemetry_from(packet: wire.Packet, message: messages.Telemetry, received_at: float) -> Telemetry:
     """The board's report in SI."""
     flags = message.flags
@@ -232,6 +271,7 @@ def telemetry_from(packet: wire.Packet, message: messages.Telemetry, received_at
         state=_state_name(message.state),
         faults=_FAULTS[flags & 7],
         saturated=bool(flags & messages.Flag.SATURATED),
+        supply_assumed=bool(flags & messages.Flag.SUPPLY_ASSUMED),
         good=message.good,
         bad=message.bad,
         refused=message.refused,

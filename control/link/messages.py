@@ -11,7 +11,15 @@ from enum import IntEnum, IntFlag
 ALLOCATION_ONE = 1 << 14
 """Q14: this integer in an allocation stands for 1 mA/uT."""
 
+SENSE_GAIN = 8929
+"""mA per ADC count, Q8: 5 V / 1024 / (0.14 V/A) = 34.88 mA (VNH5019 with the UNO's 5 V reference)."""
+
+SENSE_GAINS = (SENSE_GAIN // 2, SENSE_GAIN * 5 // 4)
+"""Least and most that a board may be told: the sense is known to be off by up to 25 %, and beyond that the
+regulator's products would leave 32 bits."""
+
 Triple = tuple[int, int, int]
+Six = tuple[int, int, int, int, int, int]
 Nine = tuple[int, int, int, int, int, int, int, int, int]
 
 
@@ -33,6 +41,7 @@ class Flag(IntFlag):
     DRIVER_FAULT = 2
     SUPPLY_LOW = 4
     SATURATED = 8
+    SUPPLY_ASSUMED = 16
 
 
 class Refusal(IntEnum):
@@ -54,6 +63,9 @@ class Refusal(IntEnum):
 
 
 class ResetCause(IntEnum):
+    """UNKNOWN: a bootloader has cleared the processor's flags and handed nothing over."""
+
+    UNKNOWN = 0
     POWER_ON = 1
     EXTERNAL = 2
     BROWN_OUT = 3
@@ -84,7 +96,8 @@ class Configure:
 
     current_limits: mA.  dead_man, ramp: ms.  field_slew: uT/256 per ms.  resistances: mOhm.
     inductances: 10 uH.  supply: mV.  max_field: uT.  max_rate: phase (2^32 = turn) per ms.
-    max_tilt: binary angle (65536 = turn).
+    max_tilt: binary angle (65536 = turn).  sense_gains: Q8 mA per ADC count, coil by coil, for positive and
+    for negative current.  supply_scale: mV that read 1024 counts; 0: the supply is not sensed.
     """
 
     current_limits: Triple
@@ -97,6 +110,8 @@ class Configure:
     max_field: int
     max_rate: int
     max_tilt: int
+    sense_gains: Six
+    supply_scale: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -128,8 +143,9 @@ class Telemetry:
     """What the board is doing, every 10 ms once it has been greeted.
 
     time: ms since boot.  heading: phase.  elevation: binary angle, signed.  commanded, measured: mA.
-    duty: Q15 of the supply.  supply: mV.  last_sequence: of the newest fresh message, obeyed or refused.
-    good: obeyed messages; bad: broken frames; refused and stale: whole messages that were not obeyed.
+    duty: Q15 of the supply.  supply: mV, 0 where it is not sensed.
+    last_sequence: of the newest fresh message, obeyed or refused.  good: obeyed messages; bad: broken frames;
+    refused and stale: whole messages that were not obeyed.
     """
 
     time: int

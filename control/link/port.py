@@ -5,21 +5,21 @@ It has no thread: `poll` is called once a tick.  Only `stop` may come from anoth
 
 from __future__ import annotations
 
-import termios
+import logging
 import threading
 import time
 from collections.abc import Callable
 
-import serial
 from serial.serialutil import SerialTimeoutException
 
 from control.link.conversion import Configuration, DriveCommand, LinkError, Telemetry
+from control.link.discovery import locator
+from control.link.line import SerialLine, Wrap
+from control.link.opening import PORT_ERRORS, WRITE_TIMEOUT, PortError, open_serial, trouble_of
 from control.link.session import LinkState, Session
-from control.snapshot import LinkStatus
+from control.snapshot import LinkCounts, LinkStatus
 
-WRITE_TIMEOUT = 0.03
-"""A port that takes no bytes for so long is jammed, s: two frames, once. Shorter, and pyserial, which looks at the
-clock only after it has written, would call a port jammed when the computer was busy for that long."""
+log = logging.getLogger(__name__)
 
 LAST_WORDS = 0.02
 """How long a closing port may take to send what it was given, the stop above all, s."""
@@ -28,29 +28,39 @@ FIRST_RETRY = 0.5
 LAST_RETRY = 5.0
 """Back-off between attempts to open a lost port, s; doubled each time."""
 
-PORT_ERRORS = (OSError, termios.error)
-"""What a port that fails raises: pyserial lets the terminal's own error through, which is no OSError."""
-
 MOST_BYTES = 4096
 """Read at one poll at most: 70 reports."""
 
 
 class Link:
-    """One board on one port; `clock` is the rig's clock, s."""
+    """One board on one port; `clock` is the rig's clock, s.
+
+    port: a name, a pyserial URL, or "auto" for the one board that is plugged in; once open, where it is.
+    wrap: put before the port each time it is opened; `put_before` adds another.
+    """
 
     def __init__(
-        self, port: str, baud: int, configuration: Configuration, clock: Callable[[], float]
+        self,
+        port: str,
+        baud: int,
+        configuration: Configuration,
+        clock: Callable[[], float],
+        wrap: Wrap | None = None,
     ) -> None:
         self.port = port
+        self._locate = locator(port)
         self._baud = baud
         self._clock = clock
+        self._wraps: list[Wrap] = [] if wrap is None else [wrap]
         self._session = Session(configuration)
-        self._serial: serial.Serial | None = None
+        self._serial: SerialLine | None = None
         self._writing = threading.Lock()
         self._stop_is_due = False
         self._wanted = False
         self._retry_after = FIRST_RETRY
         self._retry_at = 0.0
+        self._sent = 0
+        self._reconnects = 0
 
     # ---- opening, losing, closing
 
@@ -60,7 +70,7 @@ class Link:
             return
         self._wanted = True
         try:
-            self._serial = _open_port(self.port, self._baud)
+            self._serial = self._open_port()
         except LinkError as error:
             self._wanted = False
             self._session.lose(str(error))
@@ -84,7 +94,7 @@ class Link:
                 _drain(port)
             except PORT_ERRORS as error:
                 self._session.reason = f"{self.port} is gone: {error}"
-            port.close()
+            _let_go(port)
 
     def _lose(self, reason: str) -> None:
         """The port failed: let go of it and try again later; the board zeroes itself meanwhile."""
@@ -97,11 +107,28 @@ class Link:
         if not self._wanted or self._clock() < self._retry_at:
             return
         try:
-            self._serial = _open_port(self.port, self._baud)
+            self._serial = self._open_port()
         except LinkError as error:
             self._lose(str(error))
             return
+        self._reconnects += 1
         self._session.open()
+
+    def _open_port(self) -> SerialLine:
+        """Where the port is now, open; it may have come back under another name."""
+        self.port = self._locate()
+        line = open_serial(self.port, self._baud)
+        try:
+            for wrap in self._wraps:
+                line = wrap(line)
+        except OSError as error:
+            line.close()
+            raise PortError(f"cannot use {self.port}: {error}", trouble_of(error)) from error
+        return line
+
+    def put_before(self, wrap: Wrap) -> None:
+        """Also put this before the port, outermost, from the next opening on."""
+        self._wraps.append(wrap)
 
     def greet(self) -> None:
         """Greet the board anew, which zeroes its coils and clears a fault that it has latched."""
@@ -136,7 +163,7 @@ class Link:
             self._session.reason = str(error)
 
     @staticmethod
-    def _read(port: serial.Serial) -> bytes:
+    def _read(port: SerialLine) -> bytes:
         waiting = min(port.in_waiting, MOST_BYTES)
         return port.read(waiting) if waiting else b""
 
@@ -159,6 +186,7 @@ class Link:
                 self._stop_is_due = False
                 if self._serial is not None:
                     self._serial.write(self._session.stop())
+                    self._sent += 1
             except PORT_ERRORS:
                 self._session.reason = f"{self.port} did not take the stop; the board's dead-man acts"
             finally:
@@ -184,6 +212,7 @@ class Link:
         frame = compose()
         if frame:
             self._serial.write(frame)
+            self._sent += 1
 
     # ---- what it is like
 
@@ -202,37 +231,46 @@ class Link:
         return self._session.state is LinkState.READY
 
     @property
+    def bad_share(self) -> float:
+        """0..1 of the last second's frames that arrived broken, in the worse direction."""
+        return self._session.bad_share(self._clock())
+
+    @property
     def status(self) -> LinkStatus:
         session = self._session
         telemetry = session.telemetry
+        median, p99 = session.round_trips.figures or (None, None)
         return LinkStatus(
             state=session.state.value,
             port=self.port,
             firmware=session.firmware,
             boot_id=session.boot_id,
-            round_trip=session.round_trip,
+            round_trip=session.round_trips.newest,
+            round_trip_median=median,
+            round_trip_p99=p99,
             bad_frames=session.broken_frames,
+            bad_share=self.bad_share,
+            counts=self._counts(telemetry),
             board_state="" if telemetry is None else telemetry.state.value,
             board_faults=() if telemetry is None else telemetry.faults,
             supply=0.0 if telemetry is None else telemetry.supply,
         )
 
-
-def _open_port(port: str, baud: int) -> serial.Serial:
-    """The open port; nothing blocks on it for longer than WRITE_TIMEOUT."""
-    try:
-        opened = serial.serial_for_url(
-            port, baudrate=baud, timeout=0, write_timeout=WRITE_TIMEOUT, exclusive=True
+    def _counts(self, telemetry: Telemetry | None) -> LinkCounts:
+        session = self._session
+        return LinkCounts(
+            sent=self._sent,
+            received=session.received,
+            broken=session.broken_by_kind,
+            resends=session.resends,
+            reconnects=self._reconnects,
+            board_bad=0 if telemetry is None else telemetry.bad,
+            refused=0 if telemetry is None else telemetry.refused,
+            stale=0 if telemetry is None else telemetry.stale,
         )
-    except (*PORT_ERRORS, ValueError) as error:
-        raise LinkError(
-            f"cannot open {port} at {baud} baud: {error}. Check that it is connected, that no other program "
-            "has it open, and that you may use it (group dialout)"
-        ) from error
-    return opened
 
 
-def _drain(port: serial.Serial) -> None:
+def _drain(port: SerialLine) -> None:
     """Lets the last bytes out; what a jammed line keeps is thrown away, since closing would wait for it."""
     until = time.monotonic() + LAST_WORDS
     while port.out_waiting > 0:
@@ -240,3 +278,10 @@ def _drain(port: serial.Serial) -> None:
             port.reset_output_buffer()
             return
         time.sleep(1e-3)
+
+
+def _let_go(port: SerialLine) -> None:
+    try:
+        port.close()
+    except PORT_ERRORS:
+        log.debug("a port that is gone complained when it was closed", exc_info=True)

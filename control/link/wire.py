@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import struct
 from binascii import crc_hqx
+from collections.abc import Iterator
 from dataclasses import dataclass
 from operator import attrgetter
 from typing import Any
@@ -23,7 +24,7 @@ SEQUENCE_WINDOW = 1000
 """How far a sequence number may run ahead of the last accepted one: about 16 s of lost messages at 60 Hz."""
 
 LONGEST_FRAME = 64
-"""Bytes between two delimiters, at most: the telemetry's 55 and the size of the board's receive buffer."""
+"""Bytes between two delimiters, at most: the configuration's 57, and what the board's decoder has room for."""
 
 
 class WireError(ValueError):
@@ -40,14 +41,15 @@ class Packet:
     message: Message
 
 
-class _Layout:
+class Layout:
     """How the body of one message type lies in bytes: (field name, struct format) in order."""
 
     def __init__(self, code: int, message: type[Message], fields: tuple[tuple[str, str], ...]) -> None:
         self.code = code
         self.message: Any = message
+        self.fields = fields
         self.format = struct.Struct("<" + "".join(kind for _, kind in fields))
-        self._fields = [(attrgetter(name), kind, len(kind) > 1) for name, kind in fields]
+        self._readers = [(attrgetter(name), kind, len(kind) > 1) for name, kind in fields]
         self._places: list[int | slice] = []
         start = 0
         for _, kind in fields:
@@ -57,7 +59,7 @@ class _Layout:
 
     def pack(self, message: Message) -> bytes:
         flat: list[int] = []
-        for read, _, is_vector in self._fields:
+        for read, _, is_vector in self._readers:
             if is_vector:
                 flat += read(message)
             else:
@@ -65,35 +67,36 @@ class _Layout:
         try:
             return self.format.pack(*flat)
         except struct.error as error:
-            raise WireError(self._complaint(message)) from error
+            wrong = ", ".join(self._misfits(message))
+            raise WireError(f"{wrong} in {message!r} does not fit the wire: {error}") from error
 
     def unpack(self, body: bytes) -> Message:
         values = self.format.unpack(body)
         return self.message(*[values[place] for place in self._places])
 
-    def _complaint(self, message: Message) -> str:
-        for read, kind, is_vector in self._fields:
+    def _misfits(self, message: Message) -> Iterator[str]:
+        for read, kind, is_vector in self._readers:
             value = read(message)
             try:
                 struct.pack("<" + kind, *(value if is_vector else (value,)))
-            except struct.error as error:
-                return f"{value!r} in {message!r} does not fit the wire: {error}"
-        return f"{message!r} does not fit the wire"
+            except struct.error:
+                yield repr(value)
 
 
-_LAYOUTS = (
-    _Layout(1, Hello, ()),
-    _Layout(2, Banner, (("firmware", "3B"), ("reset_cause", "B"), ("configuration_hash", "H"))),
-    _Layout(
+LAYOUTS = (
+    Layout(1, Hello, ()),
+    Layout(2, Banner, (("firmware", "3B"), ("reset_cause", "B"), ("configuration_hash", "H"))),
+    Layout(
         3,
         Configure,
         (
             *(("current_limits", "3H"), ("dead_man", "H"), ("ramp", "H"), ("field_slew", "H")),
             *(("resistances", "3H"), ("inductances", "3H"), ("supply", "H")),
             *(("max_field", "H"), ("max_rate", "I"), ("max_tilt", "H")),
+            *(("sense_gains", "6H"), ("supply_scale", "H")),
         ),
     ),
-    _Layout(
+    Layout(
         4,
         Drive,
         (
@@ -101,8 +104,8 @@ _LAYOUTS = (
             *(("tilt", "H"), ("field", "H"), ("allocation", "9h"), ("time_to_live", "H")),
         ),
     ),
-    _Layout(5, Stop, ()),
-    _Layout(
+    Layout(5, Stop, ()),
+    Layout(
         6,
         Telemetry,
         (
@@ -114,18 +117,18 @@ _LAYOUTS = (
         ),
     ),
 )
-_BY_MESSAGE = {layout.message: layout for layout in _LAYOUTS}
-_BY_CODE = {layout.code: layout for layout in _LAYOUTS}
-_HEADER = struct.Struct("<BBHH")
+_BY_MESSAGE = {layout.message: layout for layout in LAYOUTS}
+_BY_CODE = {layout.code: layout for layout in LAYOUTS}
+HEADER = struct.Struct("<BBHH")
 _CRC = struct.Struct("<H")
-_SHORTEST = _HEADER.size + _CRC.size
+_SHORTEST = HEADER.size + _CRC.size
 
 
 def encode(message: Message, sequence: int, boot_id: int, version: int = PROTOCOL_VERSION) -> bytes:
     """The frame of one message, delimiters included; WireError when a value does not fit its field."""
     layout = _BY_MESSAGE[type(message)]
     try:
-        payload = _HEADER.pack(layout.code, version, sequence, boot_id) + layout.pack(message)
+        payload = HEADER.pack(layout.code, version, sequence, boot_id) + layout.pack(message)
     except struct.error as error:
         received = f"version {version!r}, sequence {sequence!r}, boot id {boot_id!r}"
         raise WireError(f"{received}: the header takes a u8 and two u16 ({error})") from error
@@ -160,6 +163,11 @@ class Decoder:
         """Frames that yielded no packet."""
         broken = self.bad_cobs + self.bad_crc + self.oversize + self.wrong_length
         return broken + self.unknown_type + self.wrong_version
+
+    def restart(self) -> None:
+        """Forgets the frame that is coming in, for a line that begins anew; the counts go on."""
+        self._partial = b""
+        self._skipping = False
 
     def feed(self, data: bytes) -> list[Packet]:
         *complete, rest = (self._partial + data).split(b"\0")
@@ -200,7 +208,7 @@ class Decoder:
         return self._read(payload)
 
     def _read(self, payload: bytes) -> Packet | None:
-        code, version, sequence, boot_id = _HEADER.unpack_from(payload)
+        code, version, sequence, boot_id = HEADER.unpack_from(payload)
         layout = _BY_CODE.get(code)
         if layout is None:
             self.unknown_type += 1
@@ -208,7 +216,7 @@ class Decoder:
         if version != PROTOCOL_VERSION and layout.message not in (Hello, Banner):
             self.wrong_version += 1
             return None
-        if len(payload) != _HEADER.size + layout.format.size:
+        if len(payload) != HEADER.size + layout.format.size:
             self.wrong_length += 1
             return None
-        return Packet(version, sequence, boot_id, layout.unpack(payload[_HEADER.size :]))
+        return Packet(version, sequence, boot_id, layout.unpack(payload[HEADER.size :]))

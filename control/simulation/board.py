@@ -2,38 +2,17 @@
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass
-
 from control.link.messages import BoardCode, ResetCause, Triple
 from control.simulation import protocol_sim
-from control.simulation.coil_drive import PWM_STEPS
-from control.simulation.regulator import FULL_COUNT
+from control.simulation.bridges import Bridges, Winding
 from control.simulation.twin import FirmwareTwin
-from control.snapshot import ZERO, Vector
+from control.snapshot import Vector
 
 UART_BYTES = 50
 """Bytes a millisecond each way at 500 kbaud, 10 bits a byte."""
 
 RECEIVE_BUFFER = 4096
 """Bytes that the operating system keeps for a port, each way."""
-
-_COUNTS_PER_AMPERE = 0.14 / 5.0 * 1024.0
-_TICK = 1e-3
-
-
-@dataclass(frozen=True, slots=True)
-class Winding:
-    """One coil pair as its bridge sees it: ohm, H."""
-
-    resistance: float
-    inductance: float
-
-    def __post_init__(self) -> None:
-        for name in ("resistance", "inductance"):
-            value = getattr(self, name)
-            if not (math.isfinite(value) and value > 0.0):
-                raise ValueError(f"a coil's {name} is {value!r}; it must be a positive number in SI units")
 
 
 class TwinBoard:
@@ -43,21 +22,17 @@ class TwinBoard:
     from another thread than `advance`.
     """
 
+    firmware = "twin"
+
     def __init__(
         self, name: str, coils: tuple[Winding, Winding, Winding], supply: float, boot_id: int = 1
     ) -> None:
         self.name = name
         self.plugged = True
-        self.currents: Vector = ZERO
         self.milliseconds = 0
-        self._decay = tuple(math.exp(-_TICK * coil.resistance / coil.inductance) for coil in coils)
-        self._gain = tuple(
-            (1.0 - decay) / coil.resistance / steps
-            for decay, coil, steps in zip(self._decay, coils, PWM_STEPS, strict=True)
-        )
+        self.bridges = Bridges(coils, supply)
         self._inbox = bytearray()
         self._outbox = bytearray()
-        self.supply = supply
         self.twin = FirmwareTwin(boot_id)
         if name:
             protocol_sim.register(name, self)
@@ -72,21 +47,11 @@ class TwinBoard:
         twin = self.twin
         if self._inbox:
             self._receive()
-        i1, i2, i3 = self.currents
-        counts = _counts(i1), _counts(i2), _counts(i3)
-        d1, d2, d3 = twin.tick(counts, self._supply_mV)
+        duty = twin.tick(self.bridges.counts, self.bridges.supply_count)
         if twin.is_sending:
             self._transmit()
         self.milliseconds += 1
-        a1, a2, a3 = self._decay
-        b1, b2, b3 = self._gain
-        supply = self._supply
-        self.currents = (
-            a1 * i1 + b1 * d1 * supply,
-            a2 * i2 + b2 * d2 * supply,
-            a3 * i3 + b3 * d3 * supply,
-        )
-        return self.currents
+        return self.bridges.step(duty)
 
     def _receive(self) -> None:
         chunk = bytes(self._inbox[:UART_BYTES])
@@ -99,16 +64,27 @@ class TwinBoard:
             self._outbox += sent
 
     @property
+    def currents(self) -> Vector:
+        """The true coil currents, A."""
+        return self.bridges.currents
+
+    @property
     def supply(self) -> float:
         """The bridges' supply, V; 0 is a supply that is switched off."""
-        return self._supply
+        return self.bridges.supply
 
     @supply.setter
     def supply(self, volts: float) -> None:
-        if not (math.isfinite(volts) and 0.0 <= volts <= 65.0):
-            raise ValueError(f"supply is {volts!r} V; allowed is 0 to 65 V")
-        self._supply = volts
-        self._supply_mV = round(volts * 1e3)
+        self.bridges.supply = volts
+
+    def set_condition(self, name: str, value: int, coil: int | None = None) -> None:
+        """One of `control.simulation.conditions`, in force until it is set otherwise."""
+        self.bridges.set_condition(name, value, coil)
+        self.twin.driver_fault = self.bridges.has_driver_fault
+
+    @property
+    def boot_id(self) -> int:
+        return self.twin.boot_id
 
     @property
     def state(self) -> BoardCode:
@@ -126,6 +102,7 @@ class TwinBoard:
     def reset(self, cause: ResetCause = ResetCause.EXTERNAL) -> None:
         """The board boots anew, with the next boot id; what the port holds of its words is kept."""
         self.twin = FirmwareTwin(self.twin.boot_id % 0xFFFF + 1, cause)
+        self.twin.driver_fault = self.bridges.has_driver_fault
         self._inbox.clear()
 
     def close(self) -> None:
@@ -160,9 +137,3 @@ class TwinBoard:
         taken = bytes(self._outbox[:most])
         del self._outbox[:most]
         return taken
-
-
-def _counts(current: float) -> int:
-    """What the ADC makes of the driver's unsigned current sense: 0.14 V/A, 10 bits of 5 V."""
-    counts = int(abs(current) * _COUNTS_PER_AMPERE)
-    return counts if counts < FULL_COUNT else FULL_COUNT

@@ -8,18 +8,21 @@ from __future__ import annotations
 from control.link import messages
 from control.simulation.fixed_point import ANGLE_MASK, QUARTER_TURN, SINE
 from control.simulation.motion import FieldMotion
-from control.simulation.regulator import FULL_COUNT, SENSE_GAIN, Regulator
+from control.simulation.regulator import FULL_COUNT, Regulator
 
 PWM_STEPS = (800, 800, 100)
 """Timer1 counts to 800 for coils 1 and 2, Timer2 to 100 for coil 3, both at 20 kHz."""
 
 OVER_CURRENT_TICKS = 3
-_DUTY_SCALE = tuple((32768 << 7) // steps for steps in PWM_STEPS)
+DUTY_SCALE = tuple((32768 << 7) // steps for steps in PWM_STEPS)
 _ZERO: messages.Triple = (0, 0, 0)
 
 
 class CoilDrive:
-    """duty: signed PWM steps.  commanded: mA.  saturated: the currents were scaled back to a limit."""
+    """duty: signed PWM steps.  commanded: mA.  saturated: the currents were scaled back to a limit.
+
+    supply: as it is sensed, mV; 0 where it is not.
+    """
 
     __slots__ = (
         "_allocation",
@@ -28,11 +31,13 @@ class CoilDrive:
         "_nominal",
         "_over_current",
         "_regulators",
-        "_supply",
-        "_trip",
+        "_scale",
+        "_settled_supply",
+        "_trips",
         "commanded",
         "duty",
         "saturated",
+        "supply",
         "supply_low",
     )
 
@@ -41,21 +46,34 @@ class CoilDrive:
         self._regulators = (Regulator(x), Regulator(y), Regulator(z))
         self._allocation = (0,) * 9
         self._limits = self._counts = _ZERO
-        self._trip: messages.Triple = (FULL_COUNT, FULL_COUNT, FULL_COUNT)
-        self._nominal = 0
-        self._supply = -1
+        self._trips: messages.Six = (
+            *(FULL_COUNT, FULL_COUNT),
+            *(FULL_COUNT, FULL_COUNT),
+            *(FULL_COUNT, FULL_COUNT),
+        )
+        self._nominal = self._scale = self.supply = 0
+        self._settled_supply = -1
         self.supply_low = False
         self.rest()
 
     def configure(self, message: messages.Configure) -> None:
         self._limits = message.current_limits
-        x, y, z = (_trip_count(limit) for limit in message.current_limits)
-        self._trip = (x, y, z)
-        constants = zip(self._regulators, message.resistances, message.inductances, strict=True)
-        for regulator, resistance, inductance in constants:
+        x, y, z = message.current_limits
+        a, b, c, d, e, f = message.sense_gains
+        self._trips = (
+            *(_trip_count(x, a), _trip_count(x, b)),
+            *(_trip_count(y, c), _trip_count(y, d)),
+            *(_trip_count(z, e), _trip_count(z, f)),
+        )
+        constants = zip(
+            self._regulators, message.resistances, message.inductances, ((a, b), (c, d), (e, f)), strict=True
+        )
+        for regulator, resistance, inductance, (forward, reverse) in constants:
             regulator.configure(resistance, inductance)
+            regulator.sense_with(forward, reverse)
         self._nominal = message.supply
-        self._supply = -1
+        self._scale = message.supply_scale
+        self._settled_supply = -1
 
     def allocate(self, allocation: messages.Nine) -> None:
         self._allocation = allocation
@@ -68,27 +86,43 @@ class CoilDrive:
         for regulator in self._regulators:
             regulator.rest()
 
-    def coast(self, counts: messages.Triple, supply: int) -> None:
-        """One millisecond without drive: the observers follow the currents that decay."""
+    @property
+    def supply_assumed(self) -> bool:
+        """Nothing senses the supply, which is taken to be what it should be."""
+        return self._scale == 0
+
+    def sense(self, counts: messages.Triple, supply_count: int) -> None:
+        """Takes in what the ADC reads in this millisecond."""
         self._counts = counts
-        self.supply_low = supply < (self._nominal * 3) >> 2
-        for regulator, count in zip(self._regulators, counts, strict=True):
+        self.supply = (supply_count * self._scale) >> 10
+        self.supply_low = self._scale != 0 and self.supply < (self._nominal * 3) >> 2
+
+    def coast(self) -> None:
+        """One millisecond without drive: the observers follow the currents that decay."""
+        for regulator, count in zip(self._regulators, self._counts, strict=True):
             regulator.observe(count)
 
-    def is_over_current(self, counts: messages.Triple) -> bool:
+    def is_over_current(self) -> bool:
         """Whether a coil has been sensed above 1.25 times its limit for 3 ms; to be asked once a tick."""
-        t1, t2, t3 = self._trip
-        if counts[0] > t1 or counts[1] > t2 or counts[2] > t3:
+        r1, r2, r3 = self._regulators
+        c1, c2, c3 = self._counts
+        trips = self._trips
+        if (
+            c1 > trips[r1.flows_backwards]
+            or c2 > trips[2 + r2.flows_backwards]
+            or c3 > trips[4 + r3.flows_backwards]
+        ):
             self._over_current += 1
         else:
             self._over_current = 0
         return self._over_current >= OVER_CURRENT_TICKS
 
-    def advance(self, motion: FieldMotion, counts: messages.Triple, supply: int) -> None:
+    def advance(self, motion: FieldMotion) -> None:
         """One millisecond of regulation towards the field of `motion`."""
-        if supply != self._supply:
-            self._supply_is(supply)
-        self._counts = counts
+        supply = self.supply if self._scale else self._nominal
+        if supply != self._settled_supply:
+            self._settle_supply(supply)
+        counts = self._counts
         t1, t2, t3 = self._targets(motion)
         r1, r2, r3 = self._regulators
         r1.observe(counts[0])
@@ -119,32 +153,33 @@ class CoilDrive:
         return self.commanded
 
     def _scaled_back(self, currents: messages.Triple) -> messages.Triple:
-        """All three by the same factor (Q14), so that the direction of the field stays."""
+        """All three by the same factor (Q14), so that the direction of the field stays.
+
+        The quotient is of halves, which have 16 bits, and rounded towards the smaller factor.
+        """
         factor = 1 << 14
         for current, limit in zip(currents, self._limits, strict=True):
             if abs(current) > limit:
-                factor = min(factor, (limit << 14) // abs(current))
+                factor = min(factor, ((limit >> 1) << 14) // ((abs(current) + 1) >> 1))
         i1, i2, i3 = currents
         return (i1 * factor) >> 14, (i2 * factor) >> 14, (i3 * factor) >> 14
 
-    def _supply_is(self, supply: int) -> None:
-        self._supply = supply
-        self.supply_low = supply < (self._nominal * 3) >> 2
+    def _settle_supply(self, supply: int) -> None:
+        self._settled_supply = supply
         for regulator in self._regulators:
             regulator.supply_is(supply, self._nominal)
 
     def measured(self) -> messages.Triple:
         """Sensed magnitudes with the observers' signs, mA."""
-        sensed = ((count * SENSE_GAIN) >> 8 for count in self._counts)
-        x, y, z = (r.sign * value for r, value in zip(self._regulators, sensed, strict=True))
+        x, y, z = (r.sensed(count) for r, count in zip(self._regulators, self._counts, strict=True))
         return x, y, z
 
     def duty_q15(self) -> messages.Triple:
         """The duty registers as a fraction of full drive, Q15."""
-        x, y, z = (min(32767, (d * s) >> 7) for d, s in zip(self.duty, _DUTY_SCALE, strict=True))
+        x, y, z = ((d * s) >> 7 for d, s in zip(self.duty, DUTY_SCALE, strict=True))
         return x, y, z
 
 
-def _trip_count(limit: int) -> int:
-    """ADC counts at 1.25 times a limit in mA; below full scale, so that a saturated sense trips as well."""
-    return min(FULL_COUNT - 1, (limit * 320) // SENSE_GAIN)
+def _trip_count(limit: int, gain: int) -> int:
+    """ADC counts at 1.25 times a limit in mA: 860 at most, so that a sense at full scale trips as well."""
+    return (limit * 320) // gain

@@ -4,6 +4,9 @@
     run      run freely, in real time; answers "done"
     take     the samples since this client's last take, 2000 at most, then "done"
     state    one line of JSON
+    set NAME [COIL] VALUE
+             makes one of `control.simulation.conditions` hold, until it is set otherwise; answers "done"
+    reset    presses the board's reset button; answers "done"
 
 A sample is "t_ms ix_mA iy_mA iz_mA dx dy dz": the board's time, coil currents, signed PWM steps.
 Anything else is answered by a line that begins with "error:".  When the client that stepped goes away the
@@ -16,9 +19,11 @@ import json
 import socket
 from collections import deque
 from dataclasses import dataclass
+from typing import Any
 from urllib.parse import urlsplit
 
 from control.link.messages import Triple
+from control.simulation.conditions import checked
 from control.snapshot import ZERO, Vector
 
 MOST_STEPS = 1000
@@ -58,7 +63,7 @@ class RemoteBoard:
         self._connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         self._lines = self._connection.makefile("r", encoding="ascii", newline="\n")
         if realtime:
-            self._ask("run")
+            self.ask("run")
             self.take()
 
     def advance(self, milliseconds: int) -> list[Vector]:
@@ -67,11 +72,14 @@ class RemoteBoard:
             return []
         if self._realtime:
             return self._advance_in_real_time(milliseconds)
-        samples: list[Vector] = []
+        return [sample.currents for sample in self.step(milliseconds)]
+
+    def step(self, milliseconds: int) -> list[Sample]:
+        """Runs on and stands still; what the board did in each millisecond."""
+        samples: list[Sample] = []
         while len(samples) < milliseconds:
             count = min(MOST_STEPS, milliseconds - len(samples))
-            samples += [sample.currents for sample in self._ask(f"step {count}")]
-        self._last = samples[-1]
+            samples += self._samples(f"step {count}")
         return samples
 
     def _advance_in_real_time(self, milliseconds: int) -> list[Vector]:
@@ -88,25 +96,47 @@ class RemoteBoard:
 
     def take(self) -> list[Sample]:
         """What the board did since this client's last take, 2000 ms at most."""
-        return self._ask("take")
+        return self._samples("take")
 
     def state(self) -> dict[str, object]:
         """What the board says of itself, for people and monitors."""
-        self._send("state")
-        return json.loads(self._line())
+        return self.told("state")
+
+    def set_condition(self, name: str, value: int, coil: int | None = None) -> None:
+        """One of `control.simulation.conditions`, in force until it is set otherwise."""
+        checked(name, value, coil)
+        place = "" if coil is None else f"{coil} "
+        self.ask(f"set {name} {place}{value}")
+
+    def reset(self) -> None:
+        """The board's reset button: it boots anew, with the next boot id."""
+        self.ask("reset")
 
     def close(self) -> None:
         self._lines.close()
         self._connection.close()
 
-    def _ask(self, request: str) -> list[Sample]:
+    def ask(self, request: str) -> list[str]:
+        """The lines of an answer that ends with "done"."""
         self._send(request)
-        samples = []
-        while (line := self._line()) != "done":
-            if line.startswith("error:"):
-                raise ConnectionError(f"the board at {self.url} answered {line!r}")
-            samples.append(_sample(line))
-        return samples
+        lines = []
+        while (line := self._good_line()) != "done":
+            lines.append(line)
+        return lines
+
+    def told(self, request: str) -> dict[str, Any]:
+        """An answer that is one line of JSON."""
+        self._send(request)
+        return json.loads(self._good_line())
+
+    def _samples(self, request: str) -> list[Sample]:
+        return [_sample(line) for line in self.ask(request)]
+
+    def _good_line(self) -> str:
+        line = self._line()
+        if line.startswith("error:"):
+            raise ConnectionError(f"the board at {self.url} answered {line!r}")
+        return line
 
     def _send(self, request: str) -> None:
         self._connection.sendall(request.encode("ascii") + b"\n")

@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterable
 from typing import Protocol
 
 from control.link.messages import BoardCode, Triple
+from control.simulation.conditions import ConditionRefused
 from control.simulation.lockstep import MOST_SAMPLES, MOST_STEPS
 from control.snapshot import Vector
 
@@ -27,14 +28,20 @@ MOST_CATCH_UP = 1000
 class SteppedBoard(Protocol):
     """What the server drives."""
 
+    firmware: str
     milliseconds: int
-    currents: Vector
 
     def advance(self, milliseconds: int) -> Iterable[Vector]: ...
+    def set_condition(self, name: str, value: int, coil: int | None = None) -> None: ...
+    def reset(self) -> None: ...
+    @property
+    def currents(self) -> Vector: ...
     @property
     def duty(self) -> Triple: ...
     @property
     def state(self) -> BoardCode: ...
+    @property
+    def boot_id(self) -> int: ...
 
 
 class _Client:
@@ -198,9 +205,13 @@ class LockstepServer:
                 client.samples.clear()
             case ["state"]:
                 lines = [self._state()]
+            case ["set", *condition]:
+                lines = [self._set(condition)]
+            case ["reset"]:
+                self._reset()
+                lines = ["done"]
             case _:
-                request = " ".join(words)[:60]
-                lines = [f"error: {request!r}: say step 1..{MOST_STEPS}, run, take or state"]
+                lines = [f"error: {_quoted(words)}: say step 1..{MOST_STEPS}, run, take, state, set or reset"]
         client.reply += "".join(line + "\n" for line in lines).encode("ascii", "replace")
 
     def _step(self, client: _Client, count: int) -> list[str]:
@@ -209,11 +220,25 @@ class LockstepServer:
         client.samples.clear()
         return samples
 
+    def _set(self, words: list[str]) -> str:
+        try:
+            self._board.set_condition(*_condition(words))
+        except ConditionRefused as error:
+            return f"error: {error}"
+        return "done"
+
+    def _reset(self) -> None:
+        """After what is on its way to the board, as a button that is pressed now."""
+        self._exchange()
+        self._board.reset()
+
     def _state(self) -> str:
         board = self._board
         return json.dumps(
             {
                 "time_ms": board.milliseconds,
+                "firmware": board.firmware,
+                "boot_id": board.boot_id,
                 "mode": "run" if self.is_running else "step",
                 "state": board.state.name.lower(),
                 "duty": board.duty,
@@ -221,3 +246,23 @@ class LockstepServer:
                 "currents_mA": [round(current * 1e3, 3) for current in board.currents],
             }
         )
+
+
+def _condition(words: list[str]) -> tuple[str, int, int | None]:
+    """name, value and coil of `NAME VALUE` or `NAME COIL VALUE`."""
+    match words:
+        case [name, value] if _is_number(value):
+            return name, int(value), None
+        case [name, coil, value] if _is_number(coil) and _is_number(value):
+            return name, int(value), int(coil)
+        case _:
+            raise ConditionRefused(f"{_quoted(words)}: say set NAME VALUE or set NAME COIL VALUE")
+
+
+def _is_number(word: str) -> bool:
+    """Of so few digits that it is cheap to read."""
+    return word.isascii() and word.isdigit() and len(word) <= 9
+
+
+def _quoted(words: list[str]) -> str:
+    return repr(" ".join(words)[:60])

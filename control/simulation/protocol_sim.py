@@ -6,6 +6,7 @@ happens when the first board registers.
 
 from __future__ import annotations
 
+import errno
 from typing import Any, Protocol
 
 import serial
@@ -40,6 +41,11 @@ def register(name: str, board: SimulatedLine) -> None:
     _boards[name] = board
 
 
+def open_ports() -> frozenset[str]:
+    """Names of the boards that are offered, and of those whose port is open."""
+    return frozenset(_boards) | _taken
+
+
 def unregister(name: str, board: SimulatedLine) -> None:
     if _boards.get(name) is board:
         del _boards[name]
@@ -56,9 +62,9 @@ class Serial(SerialBase):
         board = _boards.get(name)
         if board is None or not board.plugged:
             known = ", ".join(f"sim://{other}" for other in sorted(_boards)) or "none"
-            raise SerialException(f"no simulated board at {self.portstr}; there are: {known}")
+            raise SerialException(errno.ENOENT, f"no simulated board at {self.portstr}; there are: {known}")
         if name in _taken:
-            raise SerialException(f"{self.portstr} is in use")
+            raise SerialException(errno.EBUSY, f"{self.portstr} is in use")
         _taken.add(name)
         self._name, self._board = name, board
         self.is_open = True

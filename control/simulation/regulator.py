@@ -10,10 +10,12 @@ Unless a name says otherwise: currents in mA, voltages in mV, `>>` rounds toward
 
 from __future__ import annotations
 
-SENSE_GAIN = 8929
-"""mA per ADC count, Q8: 5 V / 1024 / (0.14 V/A) = 34.88 mA (VNH5019 with the UNO's 5 V reference)."""
+from control.link.messages import SENSE_GAIN
 
 FULL_COUNT = 1023
+MOST_SENSED = 32767
+"""mA: a full reading is up to 44.6 A, and what travels has 16 bits."""
+
 INTEGRAL_LIMIT = 6000 << 10
 """Q10 mV: covers 25 % of 24 V, a copper winding that is 60 K warmer than when it was measured."""
 
@@ -25,12 +27,14 @@ class Regulator:
         "_current",
         "_dither",
         "_feed",
+        "_forward_gain",
         "_gain",
         "_integral",
         "_lead",
         "_limit",
         "_model",
         "_reciprocal",
+        "_reverse_gain",
         "_steps",
         "_target",
         "_voltage",
@@ -42,7 +46,13 @@ class Regulator:
         self._model = self._gain = self._feed = self._lead = 0
         self._volts = self._reciprocal = self._limit = 0
         self._current = 0
+        self._forward_gain = self._reverse_gain = SENSE_GAIN
         self.rest()
+
+    def sense_with(self, forward: int, reverse: int) -> None:
+        """Gains of the current sense for positive and negative current, Q8 mA per count."""
+        self._forward_gain = forward
+        self._reverse_gain = reverse
 
     def configure(self, resistance: int, inductance: int) -> None:
         """Constants of the coil: mOhm, 10 uH.
@@ -58,7 +68,7 @@ class Regulator:
     def supply_is(self, supply: int, nominal: int) -> None:
         """Takes over a measured supply (mV); a weak one raises the duty to twice the nominal at most."""
         trusted = max(supply, nominal >> 1)
-        self._volts = (supply << 8) // self._steps
+        self._volts = (supply * ((1 << 21) // self._steps)) >> 13
         self._reciprocal = (self._steps << 16) // trusted
         self._limit = trusted
 
@@ -67,24 +77,24 @@ class Regulator:
         self._target = self._integral = self._dither = self._voltage = 0
 
     @property
-    def sign(self) -> int:
-        return -1 if self._current < 0 else 1
+    def flows_backwards(self) -> bool:
+        """Whether the observed current is negative."""
+        return self._current < 0
+
+    def sensed(self, counts: int) -> int:
+        """A reading as a current with the observer's sign, mA, within 16 bits."""
+        if self.flows_backwards:
+            return -min(MOST_SENSED, (counts * self._reverse_gain) >> 8)
+        return min(MOST_SENSED, (counts * self._forward_gain) >> 8)
 
     def observe(self, counts: int) -> None:
         """One millisecond of the coil's model, then half of the way into the sensed interval (Q8 mA)."""
         current = self._current
         current += ((self._voltage - (((current >> 6) * self._feed) >> 12)) * self._model) >> 8
-        low = counts * SENSE_GAIN
         if current >= 0:
-            if current < low:
-                current += (low - current) >> 1
-            elif current > low + SENSE_GAIN:
-                current -= (current - low - SENSE_GAIN) >> 1
-        elif -current < low:
-            current -= (low + current) >> 1
-        elif -current > low + SENSE_GAIN:
-            current += (-current - low - SENSE_GAIN) >> 1
-        self._current = current
+            self._current = _within(current, counts, self._forward_gain)
+        else:
+            self._current = -_within(-current, counts, self._reverse_gain)
 
     def regulate(self, target: int) -> int:
         """Signed PWM steps for the next millisecond, for a target current in mA."""
@@ -107,3 +117,13 @@ class Regulator:
         steps = duty >> 8
         self._voltage = (steps * self._volts) >> 8
         return steps
+
+
+def _within(magnitude: int, counts: int, gain: int) -> int:
+    """Half of the way from an observed magnitude into the interval of the reading, both Q8 mA."""
+    low = counts * gain
+    if magnitude < low:
+        return magnitude + ((low - magnitude) >> 1)
+    if magnitude > low + gain:
+        return magnitude - ((magnitude - low - gain) >> 1)
+    return magnitude

@@ -14,14 +14,14 @@ FIRMWARE_VERSION = (0, 1, 0)
 TELEMETRY_PERIOD = 10
 """Milliseconds between two reports."""
 
-TRANSMIT_BUFFER = 256
-"""Bytes waiting to be sent, at most; a message that finds no room is dropped."""
+TRANSMIT_BUFFER = 255
+"""Bytes waiting to be sent, at most, in a ring of 256; a message that finds no room is dropped."""
 
 _DRIVING = BoardCode.DRIVING
 _U16 = 0xFFFF
 _U32 = 0xFFFFFFFF
 
-_CONFIGURATION_LIMITS = {
+CONFIGURATION_LIMITS = {
     "current_limits": (1, 12000),
     "dead_man": (10, 500),
     "ramp": (1, 1000),
@@ -32,6 +32,8 @@ _CONFIGURATION_LIMITS = {
     "max_field": (1, 32767),
     "max_rate": (1, 0x0FFFFFFF),
     "max_tilt": (1, 10923),
+    "sense_gains": messages.SENSE_GAINS,
+    "supply_scale": (0, 65000),
 }
 """Allowed configuration: within these no intermediate of the arithmetic leaves 32 bits."""
 
@@ -191,26 +193,27 @@ class FirmwareTwin:
 
     # ---- one millisecond
 
-    def tick(self, counts: messages.Triple, supply: int) -> messages.Triple:
-        """One millisecond: sensed currents (unsigned ADC counts) and supply (mV) in, signed PWM steps out."""
+    def tick(self, counts: messages.Triple, supply_count: int) -> messages.Triple:
+        """One millisecond: ADC readings of the unsigned current senses and of the supply in, PWM steps out."""
         self._milliseconds = (self._milliseconds + 1) & _U32
+        self.coils.sense(counts, supply_count)
         if self.state is _DRIVING:
-            self._check_life_and_coils(counts)
+            self._check_life_and_coils()
         if self.state is _DRIVING:
             self.motion.advance()
-            self.coils.advance(self.motion, counts, supply)
+            self.coils.advance(self.motion)
         else:
-            self.coils.coast(counts, supply)
+            self.coils.coast()
         if self._greeted:
             self._until_telemetry -= 1
             if self._until_telemetry <= 0:
                 self._until_telemetry = TELEMETRY_PERIOD
-                self._send_telemetry(supply)
+                self._send_telemetry()
         return self.coils.duty
 
-    def _check_life_and_coils(self, counts: messages.Triple) -> None:
+    def _check_life_and_coils(self) -> None:
         self._life -= 1
-        over_current = self.coils.is_over_current(counts)
+        over_current = self.coils.is_over_current()
         if over_current or self.driver_fault:
             self._latched |= int(Flag.OVER_CURRENT if over_current else Flag.DRIVER_FAULT)
             self._become(BoardCode.FAULT)
@@ -233,7 +236,7 @@ class FirmwareTwin:
     def _send_banner(self, sequence: int) -> None:
         self._send(messages.Banner(FIRMWARE_VERSION, self._reset_cause, self._hash), sequence)
 
-    def _send_telemetry(self, supply: int) -> None:
+    def _send_telemetry(self) -> None:
         self._telemetry_sequence = (self._telemetry_sequence + 1) & _U16
         motion = self.motion
         message = messages.Telemetry(
@@ -243,7 +246,7 @@ class FirmwareTwin:
             commanded=self.coils.commanded,
             measured=self.coils.measured(),
             duty=self.coils.duty_q15(),
-            supply=supply,
+            supply=self.coils.supply,
             state=self.state,
             flags=self._flags(),
             last_sequence=self._last_sequence,
@@ -257,13 +260,18 @@ class FirmwareTwin:
         self._send(message, self._telemetry_sequence)
 
     def _flags(self) -> int:
-        condition = Flag.SATURATED if self.coils.saturated else 0
-        return self._latched | condition | (Flag.SUPPLY_LOW if self.coils.supply_low else 0)
+        coils = self.coils
+        conditions = (
+            (coils.saturated, Flag.SATURATED),
+            (coils.supply_low, Flag.SUPPLY_LOW),
+            (coils.supply_assumed, Flag.SUPPLY_ASSUMED),
+        )
+        return self._latched | sum(flag for holds, flag in conditions if holds)
 
 
 def _configuration_is_allowed(message: messages.Configure) -> bool:
     """Within the ranges, and no coil faster than L/R = 5 ms, which a 1 kHz loop could not regulate."""
-    for name, (low, high) in _CONFIGURATION_LIMITS.items():
+    for name, (low, high) in CONFIGURATION_LIMITS.items():
         value = getattr(message, name)
         if not all(low <= number <= high for number in (value if isinstance(value, tuple) else (value,))):
             return False

@@ -6,11 +6,12 @@ Single-threaded and without a clock of its own: whoever looks at it (the simulat
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Protocol
 
 from control.coils import CoilSet
 from control.model import Body, Pivot, Pose
+from control.simulation.wiring import STRAIGHT, Wiring
 from control.snapshot import ZERO, Vector
 
 STEP = 1e-3
@@ -25,6 +26,14 @@ class Board(Protocol):
 
     def advance(self, milliseconds: int) -> Sequence[Vector]:
         """Run on; the three coil currents (A) at the end of each millisecond."""
+        ...
+
+    def set_condition(self, name: str, value: int, coil: int | None = None) -> None:
+        """One of `control.simulation.conditions`."""
+        ...
+
+    def reset(self) -> None:
+        """Boot anew."""
         ...
 
     def close(self) -> None: ...
@@ -46,20 +55,29 @@ class Plant(Protocol):
 
 
 class World:
-    """All that is not the host: owns the board and the robot, knows the coils.
+    """All that is not the host: owns the board and the robot, knows where the coils truly stand.
 
-    start_time: the world's time at the beginning, s.
+    start_time: the world's time at the beginning, s.  wiring: which pair hangs on which bridge.
     """
 
-    def __init__(self, board: Board, plant: Plant, coils: CoilSet, start_time: float = 0.0):
+    def __init__(
+        self,
+        board: Board,
+        plant: Plant,
+        coils: CoilSet,
+        start_time: float = 0.0,
+        wiring: Wiring = STRAIGHT,
+    ):
         if not math.isfinite(start_time):
             raise ValueError(f"the world must start at a finite time in s, got {start_time}")
         self.board = board
         self.plant = plant
         self.coils = coils
+        self.wiring = wiring
         self._start = start_time
         self._milliseconds = 0
         self._currents = ZERO
+        self._visitors: list[Callable[[], None]] = []
 
     @property
     def now(self) -> float:
@@ -68,7 +86,7 @@ class World:
 
     @property
     def currents(self) -> Vector:
-        """The true coil currents, A."""
+        """The true currents of the pairs x, y, z, A."""
         return self._currents
 
     @property
@@ -84,10 +102,16 @@ class World:
         """Put the robot somewhere by hand."""
         self.plant.place(pose)
 
+    def attend(self, visitor: Callable[[], None]) -> None:
+        """Have `visitor` called before each step of the world, on the thread that moves it."""
+        self._visitors.append(visitor)
+
     def advance_to(self, time: float) -> None:
         """Run on in whole milliseconds up to `time` (s); a time that has passed already changes nothing."""
         if not math.isfinite(time):
             raise ValueError(f"the world can only advance to a finite time in s, got {time}")
+        for visit in self._visitors:
+            visit()
         # A millionth of a step: 0.029 s / 1 ms must be 29 steps, though it rounds to 28.999...
         due = math.floor((time - self._start) / STEP + 1e-6)
         while self._milliseconds < due:
@@ -97,15 +121,17 @@ class World:
         self.board.close()
 
     def _advance(self, milliseconds: int) -> None:
-        currents = self.board.advance(milliseconds)
+        currents = self.wiring.through_pairs(self.board.advance(milliseconds))
         if len(currents) != milliseconds:
             raise ValueError(
                 f"the board was asked for the currents of {milliseconds} ms and gave {len(currents)}; "
                 "world and board no longer agree on the time"
             )
         local_field, plant = self.coils.local_field, self.plant
+        north = -1.0 if self.coils.registration.magnet_reversed else 1.0
         for sample in currents:
             x, y = plant.position
-            plant.step(local_field(x, y, sample), STEP)
+            bx, by, bz = local_field(x, y, sample)
+            plant.step((north * bx, north * by, north * bz), STEP)
         self._currents = currents[-1]
         self._milliseconds += milliseconds

@@ -15,10 +15,15 @@ from server.pictures import Pictures
 
 if TYPE_CHECKING:
     from server.rig import Rig
+    from server.rig_changes import RigChanges
 
 
 async def the_rig(connection: HTTPConnection) -> Rig:
     return connection.app.state.rig
+
+
+async def the_changes(connection: HTTPConnection) -> RigChanges | None:
+    return connection.app.state.rig_changes
 
 
 async def the_pictures(connection: HTTPConnection) -> Pictures:
@@ -30,5 +35,6 @@ async def the_tick_text(connection: HTTPConnection) -> TickText:
 
 
 TheRig = Annotated["Rig", Depends(the_rig)]
+TheChanges = Annotated["RigChanges | None", Depends(the_changes)]
 ThePictures = Annotated[Pictures, Depends(the_pictures)]
 TheTickText = Annotated[TickText, Depends(the_tick_text)]

@@ -5,18 +5,29 @@ from __future__ import annotations
 from typing import Any
 
 from fastapi import APIRouter
+from pydantic import Field
 
 from server.api import ticks
 from server.api.access import TheRig
 from server.api.body import StrictRoute
+from server.api.schemas import Edge
 
 router = APIRouter(tags=["rig actions"], route_class=StrictRoute)
 
 
+class ArmBody(Edge):
+    """A real rig needs the operator's consent; a simulated one does not."""
+
+    consent: bool = Field(
+        default=False, strict=True, title="Consent",
+        description="Current may flow: nobody is at the coils, and nothing magnetic is near them.",
+    )  # fmt: skip
+
+
 @router.post("/arm")
-async def arm(rig: TheRig) -> dict[str, Any]:
+async def arm(rig: TheRig, body: ArmBody | None = None) -> dict[str, Any]:
     """Set the board's heading to the estimate and ramp the field up; needs a locked track."""
-    await rig.arm()
+    await rig.arm(consent=body is not None and body.consent)
     return ticks.state(rig.snapshot)
 
 

@@ -35,7 +35,7 @@ FIRST_PICTURE = 2.0
 @router.get("/camera")
 async def camera(rig: TheRig) -> dict[str, Any]:
     """Size, rate and calibration: a pinhole with Brown-Conrady distortion, workspace (mm) to picture (px)."""
-    model = rig.camera_model
+    model = rig.machine.camera_model
     return {
         "size": list(model.size),
         "rate_Hz": rig.settings.camera.rate_Hz,
@@ -47,7 +47,7 @@ async def camera(rig: TheRig) -> dict[str, Any]:
             "distortion": list(model.distortion),
             "rotation": [value for row in model.rotation for value in row],
             "translation_mm": [value * 1e3 for value in model.translation],
-            "body_height_mm": rig.body_height * 1e3,
+            "body_height_mm": rig.machine.body_height * 1e3,
         },
     }
 

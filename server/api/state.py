@@ -29,12 +29,6 @@ async def state(rig: TheRig) -> dict[str, Any]:
     return ticks.state(rig.snapshot)
 
 
-@router.get("/rig")
-async def rig_file(rig: TheRig) -> dict[str, Any]:
-    """The rig file's values, in the lab's units."""
-    return rig.settings.to_public()
-
-
 @router.get("/events")
 async def events(
     rig: TheRig,

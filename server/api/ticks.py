@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from typing import Any
 
 from control.model import Measurement, Observation, Pose
-from control.snapshot import Command, Fault, LinkStatus, RunProgress, Snapshot, Timing
+from control.snapshot import Command, Fault, LinkCounts, LinkStatus, Refusals, RunProgress, Snapshot, Timing
 
 MILLI = 1e3
 
@@ -43,7 +43,9 @@ def state(snapshot: Snapshot) -> dict[str, Any]:
         "tracking": snapshot.tracking.value,
         "tracking_age_s": number(snapshot.tracking_age),
         "error_mm": scaled(snapshot.error, MILLI),
-        "saturated": snapshot.saturated,
+        "saturated": bool(snapshot.limited_by),
+        "limited_by": snapshot.limited_by,
+        "refused": refusals(snapshot.refusals),
         "body_tilt_deg": degrees(snapshot.body_tilt),
         **robot(snapshot),
         **sighting(snapshot.observation),
@@ -71,7 +73,13 @@ def coils(snapshot: Snapshot) -> dict[str, Any]:
         "currents_A": numbers(snapshot.currents),
         "measured_currents_A": numbers(snapshot.measured_currents),
         "field_mT": numbers(snapshot.field, MILLI),
+        "coil_heat": numbers(snapshot.coil_heat),
     }
+
+
+def refusals(value: Refusals) -> dict[str, int]:
+    """What was not let in since the program began."""
+    return {"frames": value.frames, "sightings": value.sightings, "reports": value.reports}
 
 
 def sighting(observation: Observation | None) -> dict[str, Any]:
@@ -148,10 +156,27 @@ def link(value: LinkStatus) -> dict[str, Any]:
         "firmware": value.firmware,
         "boot_id": value.boot_id,
         "round_trip_ms": scaled(value.round_trip, MILLI, 3),
+        "round_trip_median_ms": scaled(value.round_trip_median, MILLI, 3),
+        "round_trip_p99_ms": scaled(value.round_trip_p99, MILLI, 3),
         "bad_frames": value.bad_frames,
+        "bad_share": number(value.bad_share),
+        "counts": link_counts(value.counts),
         "board_state": value.board_state,
         "board_faults": list(value.board_faults),
         "supply_V": number(value.supply, 2),
+    }
+
+
+def link_counts(value: LinkCounts) -> dict[str, Any]:
+    return {
+        "sent": value.sent,
+        "received": value.received,
+        "broken": dict(value.broken),
+        "resends": value.resends,
+        "reconnects": value.reconnects,
+        "board_bad": value.board_bad,
+        "refused": value.refused,
+        "stale": value.stale,
     }
 
 

@@ -15,6 +15,9 @@ from control.gait_model import GaitModel
 from control.identification import TooLittle
 from control.link.conversion import LinkError
 from control.safety import Refused
+from server.commands.calibrate_coils import coils
+from server.commands.calibrate_registration import polarity, registration
+from server.commands.calibrate_windings import sense, windings
 from server.commands.outcome import (
     FAILED,
     REFUSED,
@@ -26,6 +29,7 @@ from server.commands.outcome import (
     with_simulation,
 )
 from server.settings import MM, MS, GaitSection, RigFile, in_words
+from server.signals import coils_stop_first
 
 app = typer.Typer(no_args_is_help=True, help="Measure a rig.")
 
@@ -44,6 +48,13 @@ FIGURES: dict[str, tuple[str, float]] = {
 @app.callback()
 def calibrate() -> None:
     """Measure a rig."""
+
+
+app.command()(coils)
+app.command()(windings)
+app.command()(sense)
+app.command()(polarity)
+app.command()(registration)
 
 
 @app.command()
@@ -83,12 +94,12 @@ def _gait(sweep: float, tilt: float) -> Gait:
 def _calibrate(rig_file: RigFile, gait: Gait, legs: int, leg: float, rate: float) -> dict[str, Any]:
     from server.assembly import build_machine
     from server.gait_calibration import Star, calibrate_gait
-    from server.rig import new_id
+    from server.run_list import new_id
     from vision.cameras import CameraError
 
     try:
         machine = build_machine(rig_file, realtime=not rig_file.is_simulated)
-        with console.status("walking the star"):
+        with console.status("walking the star"), coils_stop_first(machine.stop_coils):
             done = calibrate_gait(machine, new_id(), gait, Star(legs, leg * MM, math.radians(rate)))
     except (Refused, LinkError, CameraError) as error:
         raise fail(str(error), REFUSED) from error

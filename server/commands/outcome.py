@@ -13,14 +13,20 @@ import typer
 from pydantic import ValidationError
 from rich.console import Console
 
-from server.settings import RigFile, RigFileError, in_words, load_rig_file
+from server.data_folder import rig_path
+from server.rig_file import RigFileError, RigStore
+from server.settings import RigFile, in_words
 
 FAILED, USAGE, REFUSED = 1, 2, 3
 
 console = Console(stderr=True)
 
 RigOption = Annotated[
-    Path | None, typer.Option("--rig", help="Rig file (TOML); default: the paper's rig, simulated.")
+    Path | None,
+    typer.Option(
+        "--rig",
+        help="Rig file (TOML); default: the one saved in the data folder, else the paper's rig, simulated.",
+    ),
 ]
 
 
@@ -34,13 +40,21 @@ def warn(message: str) -> None:
 
 
 def read_rig_file(path: Path | None) -> RigFile:
-    """The rig file, or the paper's rig; ends the command when it cannot be used."""
-    if path is None:
-        return RigFile()
+    """The rig file, else the saved one, else the paper's rig; ends the command when it cannot be used."""
+    return open_rig_store(path).settings
+
+
+def open_rig_store(path: Path | None, data: Path | None = None) -> RigStore:
+    """The rig file that was named, or the saved one of the data folder, which need not be there."""
     try:
-        return load_rig_file(path)
+        store = RigStore(rig_path(path, data))
     except RigFileError as error:
         raise fail(str(error), USAGE) from error
+    if path is not None and not store.is_saved:
+        raise fail(f"cannot read the rig file {path}: No such file or directory", USAGE)
+    if path is None and store.is_saved:
+        console.print(f"rig file: {store.path}", markup=False, highlight=False, soft_wrap=True)
+    return store
 
 
 def with_simulation(rig_file: RigFile, options: Mapping[str, Any]) -> RigFile:

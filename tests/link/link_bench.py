@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+import time
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from itertools import count
@@ -11,7 +12,9 @@ from itertools import count
 from control.link.conversion import DriveCommand, Telemetry
 from control.link.port import Link
 from control.simulation.board import TwinBoard, Winding
+from control.simulation.lockstep import RemoteBoard
 from tests.paper_board import CONFIGURATION
+from tests.processes import started
 
 ALLOCATION = ((800.0, 0.0, 0.0), (0.0, 800.0, 0.0), (0.0, 0.0, 800.0))
 COMMAND = DriveCommand(1, 0.0, 0.0, math.radians(25.0), 0.010, ALLOCATION, 0.12)
@@ -64,3 +67,25 @@ def rig() -> Iterator[Rig]:
     finally:
         bench.link.close()
         bench.board.close()
+
+
+@contextmanager
+def board(*arguments: str) -> Iterator[tuple[str, RemoteBoard]]:
+    """A board process that runs freely: its terminal and its lock-step port."""
+    with started("control.simulation.board_process", "--linger", "1", *arguments) as (_, line):
+        serial, control = (word.partition("=")[2] for word in line.split()[1:])
+        monitor = RemoteBoard(control, realtime=True)
+        try:
+            yield serial, monitor
+        finally:
+            monitor.close()
+
+
+def until(condition: Callable[[], bool], patience: float = 10.0) -> bool:
+    """Whether it became true."""
+    end = time.monotonic() + patience
+    while time.monotonic() < end:
+        if condition():
+            return True
+        time.sleep(0.005)
+    return False

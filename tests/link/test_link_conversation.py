@@ -15,8 +15,9 @@ from link_bench import COMMAND, CONFIGURATION, Rig, rig
 
 from control.link import wire
 from control.link.conversion import BoardState, LinkError
+from control.link.line import SerialLine
 from control.link.messages import Banner, BoardCode, Hello
-from control.link.port import Link
+from control.link.port import LAST_WORDS, MOST_BYTES, Link
 from control.link.session import LinkState, Session
 
 
@@ -62,7 +63,7 @@ def test_a_ready_board_reports_in_si(bench: Rig) -> None:
     assert report.board_time == pytest.approx(bench.now, abs=0.02)
     assert report.elevation == pytest.approx(-COMMAND.tilt, abs=1e-4)
     assert report.heading == 0.0
-    assert report.supply == 24.0
+    assert report.supply == pytest.approx(24.0, abs=0.054)  # one count
     assert report.currents[1] == pytest.approx(report.measured_currents[1], abs=0.2)
     assert bench.link.status.board_state == "driving"
     assert bench.link.status.board_faults == ()
@@ -333,7 +334,7 @@ def test_a_real_terminal_in_use_is_refused(terminal: tuple[int, str]) -> None:
     first = Link(terminal[1], 500000, CONFIGURATION, time.monotonic)
     second = Link(terminal[1], 500000, CONFIGURATION, time.monotonic)
     first.open()
-    with pytest.raises(LinkError, match="no other program"):
+    with pytest.raises(LinkError, match="the other program that has it open"):
         second.open()
     first.close()
 
@@ -350,3 +351,82 @@ def test_a_real_terminal_that_hangs_up_closes_the_link() -> None:
     assert link.status.state == "closed"
     assert "lost" in link.reason
     link.close()
+
+
+def test_opening_twice_is_opening_once(bench: Rig) -> None:
+    bench.ready()
+    bench.link.open()
+    assert bench.link.is_ready
+
+
+def test_greeting_a_closed_link_does_nothing(bench: Rig) -> None:
+    bench.link.greet()
+    assert bench.link.status.state == "closed"
+
+
+class StuckLine:
+    """Before a port: keeps what it is given, and complains when it is closed."""
+
+    def __init__(self, port: SerialLine) -> None:
+        self._port = port
+        self.out_waiting = 0
+        self.thrown_away = False
+
+    @property
+    def in_waiting(self) -> int:
+        return self._port.in_waiting
+
+    def read(self, size: int = 1, /) -> bytes:
+        return self._port.read(size)
+
+    def write(self, b: bytes, /) -> int | None:
+        self.out_waiting += len(b)
+        return len(b)
+
+    def reset_output_buffer(self) -> None:
+        self.thrown_away = True
+
+    def close(self) -> None:
+        self._port.close()
+        raise OSError("gone")
+
+
+def test_a_line_that_keeps_the_last_words_is_waited_for_briefly_and_closed(bench: Rig) -> None:
+    lines: list[StuckLine] = []
+
+    def stick(port: SerialLine) -> StuckLine:
+        lines.append(StuckLine(port))
+        return lines[-1]
+
+    bench.link.put_before(stick)
+    bench.link.open()
+    bench.tick()
+    before = time.monotonic()
+    bench.link.close()
+    assert LAST_WORDS <= time.monotonic() - before < 0.5
+    assert lines[0].thrown_away
+    assert bench.link.status.state == "closed"
+
+
+def test_a_port_that_fails_while_it_takes_a_command_is_lost(bench: Rig) -> None:
+    bench.driving()
+    bench.board.unplug()
+    with pytest.raises(LinkError, match=r"lost.*unplugged"):
+        bench.link.drive(COMMAND)
+    assert bench.link.status.state == "closed"
+
+
+def test_a_stop_that_a_lost_port_does_not_take_is_left_to_the_boards_dead_man(bench: Rig) -> None:
+    bench.driving()
+    bench.board.unplug()
+    bench.link.stop()
+    assert "did not take the stop" in bench.link.reason
+    bench.tick(12)
+    assert bench.board.drive_is_zero
+
+
+def test_a_poll_reads_a_bounded_number_of_bytes_however_many_wait(bench: Rig) -> None:
+    bench.ready()
+    bench.board._outbox += bytes(100_000)
+    bench.link.poll()
+    assert len(bench.board._outbox) >= 100_000 - MOST_BYTES

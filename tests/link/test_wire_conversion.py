@@ -130,9 +130,38 @@ def test_a_configuration_in_the_units_of_the_wire() -> None:
     assert message.resistances == (2500, 2000, 1500)
     assert message.inductances == (12500, 5500, 1400)
     assert (message.supply, message.max_field, message.max_tilt) == (24000, 20000, 10923)
+    assert message.sense_gains == (8929,) * 6
+    assert message.supply_scale == 55000
 
 
-@pytest.mark.parametrize("name", Configuration.__dataclass_fields__)
+def test_each_coil_and_direction_has_its_own_sense_gain() -> None:
+    gains = ((0.034, 0.035), (0.036, 0.037), (0.038, 0.039))
+    message = configure_message(replace(CONFIGURATION, sense_gains=gains))
+    assert message.sense_gains == tuple(round(256e3 * gain) for pair in gains for gain in pair)
+
+
+@pytest.mark.parametrize("gain", [0.0, -0.034, 0.0174, 0.0437, *BAD])
+def test_a_sense_gain_that_the_board_cannot_work_with_is_refused(gain: float) -> None:
+    with pytest.raises(LinkError, match="sense gain of coil 2"):
+        configure_message(replace(CONFIGURATION, sense_gains=((0.035, 0.035), (0.035, gain), (0.035, 0.035))))
+
+
+@pytest.mark.parametrize("scale", [-0.1, 65.1, *BAD])
+def test_a_supply_scale_outside_the_wire_is_refused(scale: float) -> None:
+    with pytest.raises(LinkError, match="supply_scale"):
+        configure_message(replace(CONFIGURATION, supply_scale=scale))
+
+
+def test_a_supply_that_is_not_sensed_is_said_to_be_so() -> None:
+    assert configure_message(replace(CONFIGURATION, supply_scale=0.0)).supply_scale == 0
+
+
+POSITIVE = [
+    name for name in Configuration.__dataclass_fields__ if name not in ("sense_gains", "supply_scale")
+]
+
+
+@pytest.mark.parametrize("name", POSITIVE)
 @pytest.mark.parametrize("value", [0.0, -1.0, *BAD])
 def test_a_configuration_value_that_is_not_positive_is_refused_by_name(name: str, value: float) -> None:
     given_value = (8.0, value, 8.0) if isinstance(getattr(CONFIGURATION, name), tuple) else value

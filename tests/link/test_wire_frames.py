@@ -28,12 +28,13 @@ i8, i16, i32 = (
     st.integers(-(2**15), 2**15 - 1),
     st.integers(-(2**31), 2**31 - 1),
 )
+u16x6 = st.tuples(*[u16] * 6)
 u16x3, i16x3, i16x9 = st.tuples(u16, u16, u16), st.tuples(i16, i16, i16), st.tuples(*[i16] * 9)
 
 hellos = st.just(Hello())
 stops = st.just(Stop())
 banners = st.builds(Banner, st.tuples(u8, u8, u8), u8, u16)
-configures = st.builds(Configure, u16x3, u16, u16, u16, u16x3, u16x3, u16, u16, u32, u16)
+configures = st.builds(Configure, u16x3, u16, u16, u16, u16x3, u16x3, u16, u16, u32, u16, u16x6, u16)
 drives = st.builds(Drive, u8, i8, i32, u32, u32, u16, u16, i16x9, u16)
 telemetries = st.builds(
     Telemetry, u32, u32, i16, i16x3, i16x3, i16x3, u16, u8, u16, u16, u16, u16, u16, u16, u8, u16
@@ -46,7 +47,19 @@ TELEMETRY = Telemetry(
     *(2, 8, 4711, 6000, 3, 2, 1, 7, 0xBEEF),
 )
 CONFIGURE = Configure(
-    (8000, 8000, 8000), 200, 50, 8533, (2500, 2000, 1500), (12500, 5500, 1400), 24000, 20000, 1367131, 10923
+    *(
+        (8000, 8000, 8000),
+        200,
+        50,
+        8533,
+        (2500, 2000, 1500),
+        (12500, 5500, 1400),
+        24000,
+        20000,
+        1367131,
+        10923,
+    ),
+    *((8929, 8929, 9100, 8700, 8929, 11161), 55000),
 )
 EXAMPLES = (Hello(), Stop(), Banner((0, 1, 0), 1, 0x1234), CONFIGURE, DRIVE, TELEMETRY)
 

@@ -18,7 +18,8 @@ from server.assembly import build_machine
 from server.cli import app
 from server.gait_calibration import Star, calibrate_gait
 from server.headless import run_headless
-from server.settings import RigFile, load_rig_file
+from server.rig_file import load_rig_file
+from server.settings import RigFile
 
 LENGTH = 0.010
 TABLES = {"slip": SLIP_TABLE, "noslip": NO_SLIP}

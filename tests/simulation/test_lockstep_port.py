@@ -158,6 +158,45 @@ def test_nonsense_is_answered_and_changes_nothing(served: Served) -> None:
     assert b'"time_ms": 0' in answers[-1]
 
 
+def test_conditions_are_set_over_the_port(served: Served) -> None:
+    arm(served.bench)
+    with remote(served.url) as board:
+        board.advance(200)
+        board.set_condition("open_coil", 1, 1)
+        board.set_condition("supply_mV", 20000)
+        assert board.advance(1)[0][0] == 0.0
+        board.set_condition("driver_fault", 1, 3)
+        board.advance(2)
+        assert board.state()["state"] == "fault"
+    assert served.bench.board.supply == 20.0
+
+
+def test_a_reset_over_the_port_boots_the_board_anew(served: Served) -> None:
+    arm(served.bench)
+    with remote(served.url) as board:
+        board.advance(200)
+        before = board.state()
+        board.reset()
+        board.advance(1)
+        after = board.state()
+    assert [before["firmware"], before["boot_id"], before["state"]] == ["twin", 7, "driving"]
+    assert [after["firmware"], after["boot_id"], after["state"]] == ["twin", 8, "booted"]
+    assert after["drive_is_zero"] is True
+
+
+def test_conditions_that_there_are_not_are_answered_and_change_nothing(served: Served) -> None:
+    nonsense = (
+        b"set\nset supply_mV\nset supply_mV x\nset supply_mV 65001\nset supply_mV 1 24000\nset supply_mV -1\n"
+        b"set driver_fault 1\nset driver_fault 0 1\nset driver_fault 4 1\nset driver_fault 1 2\n"
+        b"set fire 1 1\nset open_coil 1 1 1\nreset now\nset supply_mV 9999999999\n"
+    )
+    answers = ask(served.url, nonsense, b"state\n")
+    assert len(answers) == 15
+    assert all(answer.startswith(b"error:") for answer in answers[:-1])
+    assert served.bench.board.supply == 24.0
+    assert served.bench.board.boot_id == 7
+
+
 def test_an_endless_request_is_cut_off(served: Served) -> None:
     host, port = served.url.removeprefix("tcp://").split(":")
     with socket.create_connection((host, int(port)), timeout=5) as connection:

@@ -10,6 +10,7 @@ from board_bench import CALM, Bench
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from control.link import messages
 from control.simulation.regulator import Regulator
 
 
@@ -52,6 +53,9 @@ resistances = st.sampled_from((100, 1500, 4000, 10000)) | st.integers(100, 10000
 supplies = st.sampled_from((5000, 24000, 50000)) | st.integers(5000, 50000)
 
 
+gains = st.sampled_from(messages.SENSE_GAINS) | st.integers(*messages.SENSE_GAINS)
+
+
 @given(resistances, st.data(), supplies, st.integers(0, 2**32), st.sampled_from((100, 800)))
 @settings(max_examples=120, deadline=None, derandomize=True)
 def test_no_intermediate_leaves_32_bits(
@@ -62,6 +66,7 @@ def test_no_intermediate_leaves_32_bits(
     source = random.Random(seed)
     regulator = Regulator(steps)
     regulator.configure(Int32(resistance), Int32(inductance))
+    regulator.sense_with(Int32(data.draw(gains)), Int32(data.draw(gains)))
     for _ in range(60):
         regulator.supply_is(Int32(source.choice((0, supply, 65535))), Int32(supply))
         regulator.observe(Int32(source.choice((0, 1023, source.randrange(1024)))))

@@ -241,7 +241,7 @@ def test_the_report_shows_currents_duty_and_supply() -> None:
     report = bench.telemetry
     for sensed, commanded in zip(report.measured, report.commanded, strict=True):
         assert abs(sensed - commanded) <= 1000 * TOLERANCE + 35
-    assert report.supply == 24000
+    assert report.supply == pytest.approx(24000, abs=54)  # one count
     assert report.duty[1] / 32768 * 24.0 == pytest.approx(2.0 * report.commanded[1] * 1e-3, abs=0.5)
     assert report.elevation == -TILT
 

@@ -12,6 +12,8 @@ from control.link import wire
 from control.link.messages import ARM, BoardCode, Configure, Drive, Flag, Hello, Refusal, Stop, Telemetry
 
 ARMING = replace(CALM, flags=ARM)
+NOMINAL = 446
+"""What the ADC reads of 24 V."""
 
 
 def milliseconds_until_zero(bench: Bench) -> int:
@@ -227,6 +229,9 @@ def test_a_hello_in_another_version_is_answered_and_changes_nothing() -> None:
         {"max_field": 32768},
         {"max_rate": 0x10000000},
         {"max_tilt": 10924},
+        {"sense_gains": (8929, 8929, 8929, 8929, 8929, 4463)},
+        {"sense_gains": (11162, 8929, 8929, 8929, 8929, 8929)},
+        {"supply_scale": 65001},
     ],
 )
 def test_a_configuration_outside_the_arithmetic_is_refused_whole(changes: dict) -> None:
@@ -242,9 +247,9 @@ def test_over_current_latches_until_the_board_is_greeted_and_configured() -> Non
     bench = Bench().driving()
     twin = bench.board.twin
     for _ in range(2):
-        twin.tick((300, 0, 0), 24000)
+        twin.tick((300, 0, 0), NOMINAL)
     assert twin.state == BoardCode.DRIVING
-    twin.tick((300, 0, 0), 24000)
+    twin.tick((300, 0, 0), NOMINAL)
     assert twin.duty == (0, 0, 0)
     for message in (CALM, ARMING, Stop(), CONFIGURE):
         bench.say(message)

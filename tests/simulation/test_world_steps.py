@@ -41,6 +41,12 @@ class ScriptedBoard:
         part = self.script[done : done + milliseconds]
         return part + [ZERO] * (milliseconds - len(part))
 
+    def set_condition(self, name: str, value: int, coil: int | None = None) -> None:
+        raise AssertionError(f"a script has no electrics: {name}={value} {coil}")
+
+    def reset(self) -> None:
+        raise AssertionError("a script does not boot")
+
     def close(self) -> None:
         self.closed = True
 

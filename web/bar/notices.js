@@ -1,4 +1,5 @@
 /** Under the bar: a lost connection with its cause, and messages that stay until somebody dismisses them. */
+import { reloadRigFile } from "../live/actions.js";
 import { dismiss, useStore } from "../store.js";
 import { html, useEffect, useState } from "../view.js";
 
@@ -7,6 +8,7 @@ export function Notices({ retry }) {
   return html`
     <div class="notices">
       <${Connection} retry=${retry} />
+      <${EditedRigFile} />
       ${messages.map((message) => html`<${Message} key=${message.id} ...${message} />`)}
     </div>
   `;
@@ -17,6 +19,18 @@ function Message({ id, text, severity }) {
     <div class="notice" data-severity=${severity} role="alert">
       <p>${text}</p>
       <button class="quiet" type="button" onClick=${() => dismiss(id)}>Dismiss</button>
+    </div>
+  `;
+}
+
+/** What somebody has edited in the rig file is in force only when it is applied. */
+function EditedRigFile() {
+  const edited = useStore((state) => (state.rig?.file?.changed_on_disk ? state.rig.file.path : null));
+  if (edited === null) return null;
+  return html`
+    <div class="notice" data-severity="info" role="alert">
+      <p>The rig file ${edited} was changed on disk. The rig runs with the values from before.</p>
+      <button type="button" onClick=${reloadRigFile}>Apply</button>
     </div>
   `;
 }

@@ -63,6 +63,8 @@ export const pauseRun = () => act("pause", () => post("/runs/current/pause"));
 export const resumeRun = () => act("resume", () => post("/runs/current/resume"));
 export const stopRun = () => act("stop run", () => post("/runs/current/stop"));
 
+export const reloadRigFile = () => act("reload rig file", () => post("/rig/reload"));
+
 export const startRun = () =>
   act("start", async () => {
     refuseDrafts();

@@ -50,6 +50,12 @@ async function load() {
   setRuns(runs.runs);
 }
 
+/** The rig's values, its file and its camera, which change when somebody changes the rig file. */
+async function loadRig() {
+  const [rig, camera] = await Promise.all(["/rig", "/camera"].map(read));
+  set({ rig, camera });
+}
+
 function setRuns(runs) {
   set({ runs });
   showRunPath(runs.find(({ state }) => state === "running")?.trajectory);
@@ -80,5 +86,6 @@ const handlers = {
   },
   rig(message) {
     if (message.selection && !hasUnsentEdits()) set({ selection: message.selection });
+    if (message.settings || message.file) loadRig().catch((problem) => say(problem.message));
   },
 };

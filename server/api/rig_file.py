@@ -1,0 +1,81 @@
+"""The rig file: its values, changes of them while the rig runs, and the way back."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Body
+
+from server.api.access import TheChanges, TheRig
+from server.api.body import StrictRoute
+from server.api.problems import Problem, Rejected, invalid, offence
+from server.rig import Rig
+from server.rig_changes import Change, DoNotGoTogether, NeedsDisarmed, RigChanges
+from server.rig_file import RigFileError
+
+router = APIRouter(prefix="/rig", tags=["rig file"], route_class=StrictRoute)
+
+Changes = Annotated[
+    dict[str, Any],
+    Body(
+        description="Nested values as in the rig file; null puts a default back.",
+        examples=[{"limits": {"field_mT": 12.0}}],
+    ),
+]
+
+
+@router.get("")
+async def values(rig: TheRig, changes: TheChanges) -> dict[str, Any]:
+    """The rig file's values, in the lab's units, and which file they come from."""
+    return public(rig, changes)
+
+
+@router.patch("")
+async def alter(body: Changes, rig: TheRig, changes: TheChanges) -> dict[str, Any]:
+    """Change values, and save them: all of them or none. Most need a disarmed rig, which is then rebuilt."""
+    with told():
+        return answer(rig, changes, await served(changes).patch(body))
+
+
+@router.post("/reload")
+async def reload(rig: TheRig, changes: TheChanges) -> dict[str, Any]:
+    """Take over what somebody has edited in the file."""
+    with told():
+        return answer(rig, changes, await served(changes).reload())
+
+
+@router.post("/undo")
+async def undo(rig: TheRig, changes: TheChanges) -> dict[str, Any]:
+    """Back to the file as it was before it changed last; once more goes forth again."""
+    with told():
+        return answer(rig, changes, await served(changes).undo())
+
+
+def public(rig: Rig, changes: RigChanges | None) -> dict[str, Any]:
+    return {**rig.settings.to_public(), "file": None if changes is None else changes.public()}
+
+
+def answer(rig: Rig, changes: RigChanges | None, change: Change) -> dict[str, Any]:
+    return {**public(rig, changes), "changed": list(change.fields), "rebuilt": change.rebuilt}
+
+
+def served(changes: RigChanges | None) -> RigChanges:
+    if changes is None:
+        raise Rejected(Problem(409, "No rig file", "This server has no rig file that could be changed."))
+    return changes
+
+
+@contextmanager
+def told() -> Iterator[None]:
+    """What can go wrong with a change, as a problem document."""
+    try:
+        yield
+    except NeedsDisarmed as error:
+        where = [offence(field.split("."), "needs a disarmed rig") for field in error.fields]
+        raise Rejected(Problem(409, "Needs a disarmed rig", str(error), tuple(where))) from error
+    except DoNotGoTogether as error:
+        raise Rejected(invalid([offence((), str(error))])) from error
+    except RigFileError as error:
+        raise Rejected(Problem(409, "Rig file", str(error))) from error

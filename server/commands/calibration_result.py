@@ -1,0 +1,52 @@
+"""What a calibration found: shown, or written into the rig file."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from server.commands.outcome import FAILED, console, fail, open_rig_store
+from server.rig_file import RigFileError
+from server.settings import in_words
+
+
+def saved_or_shown(rig: Path | None, changes: dict[str, Any], save: bool) -> str:
+    """Write the changes into the rig file where that is asked for; a line that says where they are."""
+    if not save:
+        return "\n".join(["for the rig file:", *toml_lines(changes)])
+    try:
+        store = open_rig_store(rig)
+        store.save(changes)
+    except ValidationError as error:
+        raise fail(f"the result does not fit into the rig file:\n{in_words(error)}", FAILED) from error
+    except RigFileError as error:
+        raise fail(str(error), FAILED) from error
+    return f"saved in {store.path}; the file before is kept beside it"
+
+
+def toml_lines(changes: dict[str, Any], prefix: str = "") -> list[str]:
+    """Nested changes as the lines of a rig file."""
+    lines = [f"{name} = {_toml(value)}" for name, value in changes.items() if not isinstance(value, dict)]
+    if lines and prefix:
+        lines.insert(0, f"[{prefix}]")
+    for name, value in changes.items():
+        if isinstance(value, dict):
+            lines += toml_lines(value, f"{prefix}.{name}" if prefix else name)
+    return lines
+
+
+def _toml(value: Any) -> str:
+    if isinstance(value, bool):
+        return str(value).lower()
+    return f'"{value}"' if isinstance(value, str) else str(value)
+
+
+def show(result: dict[str, Any], words: list[str], where: str, as_json: bool) -> None:
+    if as_json:
+        console.print(where, markup=False, highlight=False, soft_wrap=True)
+        print(json.dumps(result, allow_nan=False))
+    else:
+        print("\n".join([*words, "", where]))

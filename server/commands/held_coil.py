@@ -1,0 +1,112 @@
+"""A coil that carries a steady current while a person looks at an instrument."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Self
+
+from control.calibration.bench import Bench
+from control.calibration.windings import SenseGains, without_cut_off
+from control.coils import AXES, Axis
+from control.link.conversion import Telemetry
+from server.commands.outcome import console
+
+SHOWN_CHANGE = 0.03
+"""A sensed current that changes by this share of what is wanted is shown again."""
+
+
+@dataclass(frozen=True, slots=True)
+class Held:
+    """A coil that is to carry a current (A)."""
+
+    coil: Axis
+    current: float
+
+    @property
+    def index(self) -> int:
+        return AXES.index(self.coil)
+
+
+class HeldCoil:
+    """`with HeldCoil(...) as held:` the coil carries its current while a person looks at an instrument.
+
+    A thread of its own renews the command meanwhile; however the block ends, the coil is at zero after it.
+    """
+
+    def __init__(self, bench: Bench, held: Held) -> None:
+        self.sensed = 0.0
+        """What the board's sense shows, A."""
+        self._bench = bench
+        self._held = held
+        self._over = threading.Event()
+        self._settled = threading.Event()
+        self._shown = 0.0
+        self._error: BaseException | None = None
+        self._thread = threading.Thread(target=self._hold, name="held coil")
+
+    def __enter__(self) -> Self:
+        self._thread.start()
+        try:
+            self._settled.wait()
+            self._require_held()
+        except BaseException:
+            self._end()
+            raise
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
+        self._end()
+        if kind is None:
+            self._require_held()
+
+    def _end(self) -> None:
+        self._over.set()
+        self._thread.join()
+
+    def _require_held(self) -> None:
+        if self._error is not None:
+            raise self._error
+
+    def _hold(self) -> None:
+        try:
+            self._bench.hold_coil_while(
+                self._held.index, self._held.current, lambda: not self._over.is_set(), self._watch
+            )
+        except Exception as error:  # noqa: BLE001 (raised again on the command's own thread)
+            self._error = error
+            console.print(f"the coils are at zero: {error}", style="red", markup=False, highlight=False)
+        finally:
+            self._settled.set()
+
+    def _watch(self, report: Telemetry) -> None:
+        self.sensed = report.measured_currents[self._held.index]
+        self._settled.set()
+        if abs(self.sensed - self._shown) > SHOWN_CHANGE * abs(self._held.current):
+            self._shown = self.sensed
+            console.print(
+                f"{self._held.coil} coils: {self._held.current:+.2f} A, sensed {self.sensed:+.2f} A",
+                highlight=False,
+            )
+
+
+Instrument = Callable[[Held, HeldCoil], float]
+"""What an instrument shows while a coil is held."""
+
+
+def held_each_way(
+    bench: Bench, most: Held, instrument: Instrument, gains: SenseGains
+) -> list[tuple[float, float]]:
+    """Sensed current (A) and the instrument's value for each of four currents."""
+    found = []
+    for wanted in each_way(most.current):
+        held = Held(most.coil, wanted)
+        with HeldCoil(bench, held) as coil:
+            value = instrument(held, coil)
+            found.append((without_cut_off(coil.sensed, gains), value))
+    return found
+
+
+def each_way(current: float) -> tuple[float, ...]:
+    return 0.5 * current, -0.5 * current, -current, current

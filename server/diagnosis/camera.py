@@ -1,0 +1,71 @@
+"""The camera: is it there, what size and rate it delivers, and whether there is anything in the picture."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from control.model import Frame
+from control.parts import Camera
+from server.diagnosis.check import Check, ok, problem, warning
+from server.settings import RigFile
+
+WATCHED = 1.0
+"""How long frames are counted, s of the camera's clock."""
+FIRST_FRAME = 3.0
+"""A camera that has just been opened may take so long to its first frame, s."""
+SLOWER = 0.9
+"""Of the asked rate that still counts as kept."""
+DARK = 8.0
+"""Mean grey level (0..255) of a picture behind a lens cap."""
+
+
+def examine(camera: Camera, settings: RigFile) -> Iterator[Check]:
+    frames = watch(camera)
+    if len(frames) < 2:
+        yield problem(
+            "camera", f"{settings.camera.uri} delivers no frames", "connect it anew; close other programs"
+        )
+        return
+    yield delivery(frames, settings)
+    yield content(frames[-1])
+
+
+def watch(camera: Camera) -> list[Frame]:
+    """The frames of a second, from the first one on."""
+    frames: list[Frame] = []
+    until = camera.now() + FIRST_FRAME
+    while camera.now() < until:
+        frame = camera.read(0.05)
+        if frame is not None:
+            until = until if frames else frame.captured_at + WATCHED
+            frames.append(frame)
+    return frames
+
+
+def delivery(frames: list[Frame], settings: RigFile) -> Check:
+    height, width = frames[-1].image.shape[:2]
+    asked = settings.camera
+    rate = (len(frames) - 1) / (frames[-1].captured_at - frames[0].captured_at)
+    found = f"{asked.uri}: {width}x{height} px, {rate:.1f} frames/s"
+    if (width, height) != asked.size_px:
+        size = f"{asked.size_px[0]}x{asked.size_px[1]}"
+        return problem(
+            "camera", f"{found}; {size} px were asked", "set camera.size_px to a size that it offers"
+        )
+    if not rate >= SLOWER * asked.rate_Hz:
+        advice = (
+            "more light (shorter exposure), a smaller picture, another USB port, or a lower camera.rate_Hz"
+        )
+        return warning("camera", f"{found}; {asked.rate_Hz:g} were asked", advice)
+    return ok("camera", found)
+
+
+def content(frame: Frame) -> Check:
+    mean = float(frame.image.mean())
+    if not mean >= DARK:
+        return warning(
+            "picture",
+            f"dark: mean grey level {mean:.0f} of 255",
+            "take the lens cap off, switch the light on",
+        )
+    return ok("picture", f"mean grey level {mean:.0f} of 255")

@@ -1,0 +1,260 @@
+"""The rig file on disk: read and validated whole, changed without losing a comment, saved so that nothing tears it."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Mapping, MutableMapping
+from dataclasses import dataclass
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+import tomlkit
+from pydantic import ValidationError
+
+from server.atomic_save import Staged, keep_previous, previous_of
+from server.settings import FORMAT, RigFile, Section, in_words
+
+NAME = "rig.toml"
+"""The rig file that the data folder may hold."""
+
+HEADING = "# A rig of pivotrig. What is left out here is the paper's rig, simulated.\n"
+
+
+class RigFileError(ValueError):
+    """A rig file that cannot be used or saved; the text says where and why."""
+
+
+class ChangedOnDisk(RigFileError):
+    """Somebody has edited the file since it was read."""
+
+
+def load_rig_file(path: Path) -> RigFile:
+    """Read and validate a rig file; raises `RigFileError` naming every wrong value with its line."""
+    return settings_in(read(path), path)
+
+
+def read(path: Path) -> str:
+    """The file's text; raises `RigFileError`."""
+    try:
+        return path.read_text(encoding="utf-8")
+    except OSError as error:
+        raise RigFileError(f"cannot read the rig file {path}: {error.strerror or error}") from error
+    except UnicodeDecodeError as error:
+        raise RigFileError(f"the rig file {path} is not TOML: it is not UTF-8 text ({error})") from error
+
+
+def settings_in(text: str, path: Path) -> RigFile:
+    """The rig that a file's text describes; raises `RigFileError`."""
+    try:
+        values = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise RigFileError(f"the rig file {path} is not TOML: {error}") from error
+    _refuse_newer(values, path)
+    try:
+        return RigFile.model_validate(values)
+    except ValidationError as error:
+        words = in_words(error, lambda field: _at_line(text, field))
+        raise RigFileError(f"the rig file {path} cannot be used:\n{words}") from error
+
+
+def _refuse_newer(values: Mapping[str, Any], path: Path) -> None:
+    found = values.get("version")
+    if isinstance(found, int) and not isinstance(found, bool) and found > FORMAT:
+        raise RigFileError(
+            f"the rig file {path} has version = {found}, and this pivotrig {version('pivotrig')} reads versions up "
+            f"to {FORMAT}: it needs a newer pivotrig. The file has not been changed"
+        )
+
+
+# Where a value stands ---------------------------------------------------------------------------
+
+_HEADER = re.compile(r"\s*\[\s*([^\[\]]+?)\s*\]")
+_KEY = re.compile(r"\s*([\w.\"'-]+(?:\s*\.\s*[\w\"'-]+)*)\s*=")
+
+
+def _at_line(text: str, field: tuple[str | int, ...]) -> str:
+    """ " (line 7)" for the line that sets a field, or the table that lacks it; "" when neither is there."""
+    wanted = tuple(str(part) for part in field)
+    lines = _lines(text)
+    for length in range(len(wanted), 0, -1):
+        if wanted[:length] in lines:
+            return f" (line {lines[wanted[:length]]})"
+    return ""
+
+
+def _lines(text: str) -> dict[tuple[str, ...], int]:
+    """Line number of each table and each key, by its path."""
+    found: dict[tuple[str, ...], int] = {}
+    table: tuple[str, ...] = ()
+    for number, line in enumerate(text.splitlines(), start=1):
+        if header := _HEADER.match(line):
+            table = _path(header[1])
+            found.setdefault(table, number)
+        elif key := _KEY.match(line):
+            found.setdefault((*table, *_path(key[1])), number)
+    return found
+
+
+def _path(dotted: str) -> tuple[str, ...]:
+    return tuple(part.strip().strip("\"'") for part in dotted.split("."))
+
+
+# Changes ----------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """A rig file as it shall become. changed: the dotted names of the fields whose values differ."""
+
+    text: str
+    settings: RigFile
+    changed: tuple[str, ...]
+
+
+def merged(values: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
+    """`values` with nested `changes`; None puts a default back."""
+    result = dict(values)
+    for name, change in changes.items():
+        if change is None:
+            result.pop(name, None)
+        elif isinstance(change, Mapping) and isinstance(result.get(name), Mapping):
+            result[name] = merged(result[name], change)
+        else:
+            result[name] = change
+    return result
+
+
+def differences(before: Section, after: Section, prefix: str = "") -> tuple[str, ...]:
+    """Dotted names of the fields whose values differ."""
+    names: list[str] = []
+    for name in type(after).model_fields:
+        old, new = getattr(before, name), getattr(after, name)
+        if isinstance(old, Section) and isinstance(new, Section):
+            names += differences(old, new, f"{prefix}{name}.")
+        elif old != new:
+            names.append(prefix + name)
+    return tuple(names)
+
+
+def with_settings(text: str, before: RigFile, after: RigFile) -> str:
+    """The text with the values of `after` where they differ from `before`; comments and layout stay.
+
+    A layout in which that does not work out (some with dotted keys) is given up for a plain one with every value.
+    """
+    document = tomlkit.parse(text or f"{HEADING}version = {FORMAT}\n")
+    _write(document, before, after)
+    changed = tomlkit.dumps(document)
+    return changed if _says(changed, after) else _written_anew(after)
+
+
+def _says(text: str, settings: RigFile) -> bool:
+    try:
+        return RigFile.model_validate(tomllib.loads(text)) == settings
+    except ValueError:
+        return False
+
+
+def _written_anew(settings: RigFile) -> str:
+    return HEADING + tomlkit.dumps(settings.model_dump(mode="json", exclude_none=True))
+
+
+def _write(table: MutableMapping[str, Any], before: Section | None, after: Section) -> None:
+    plain = after.model_dump(mode="json")
+    for name in type(after).model_fields:
+        old, new = getattr(before, name, None), getattr(after, name)
+        if old == new and before is not None:
+            continue
+        if isinstance(new, Section):
+            _write_section(table, name, old if isinstance(old, Section) else None, new)
+        elif plain[name] is None:
+            table.pop(name, None)
+        else:
+            table[name] = plain[name]
+
+
+def _write_section(
+    table: MutableMapping[str, Any], name: str, before: Section | None, after: Section
+) -> None:
+    """A section that the file has not had is written whole when some of its fields have no default."""
+    if name not in table:
+        table[name] = tomlkit.table()
+        if any(field.is_required() for field in type(after).model_fields.values()):
+            before = None
+    _write(table[name], before, after)
+
+
+class RigStore:
+    """One rig file, which need not be there yet. text, settings: as last read or saved here."""
+
+    def __init__(self, path: Path) -> None:
+        """Reads the file where there is one; raises `RigFileError`."""
+        self.path = path
+        self.is_saved = path.exists()
+        self.text = read(path) if self.is_saved else ""
+        self.settings = settings_in(self.text, path)
+
+    def plan(self, changes: Mapping[str, Any]) -> Plan:
+        """What `changes` make of the file; raises ValidationError or `RigFileError`, and changes nothing."""
+        wanted = RigFile.model_validate(merged(self.settings.model_dump(mode="json"), changes))
+        text = with_settings(self.text, self.settings, wanted)
+        return Plan(text, wanted, differences(self.settings, wanted))
+
+    def plan_of_disk(self) -> Plan:
+        """The file as it is on the disk now; raises `RigFileError`."""
+        return self._plan_of(read(self.path), self.path)
+
+    def plan_of_previous(self) -> Plan:
+        """The file as it was before the last save; raises `RigFileError`."""
+        path = previous_of(self.path)
+        return self._plan_of(read(path), path)
+
+    def _plan_of(self, text: str, path: Path) -> Plan:
+        settings = settings_in(text, path)
+        return Plan(text, settings, differences(self.settings, settings))
+
+    @property
+    def is_as_read(self) -> bool:
+        """Whether nobody else has written the file; one that was deleted counts as unchanged."""
+        return not self.path.exists() or read(self.path) == self.text
+
+    def stage(self, plan: Plan) -> Staged:
+        """The new file, complete on the disk beside the old one; raises `RigFileError`."""
+        if not self.is_as_read:
+            raise ChangedOnDisk(
+                f"the rig file {self.path} was edited since it was read; reload it first (POST /api/v1/rig/reload)"
+            )
+        try:
+            return Staged(self.path, plan.text)
+        except OSError as error:
+            raise self._not_saved(error) from error
+
+    def commit(self, staged: Staged, plan: Plan) -> None:
+        """Put the staged file in place, the old one kept beside it; raises `RigFileError`."""
+        try:
+            staged.commit()
+        except OSError as error:
+            raise self._not_saved(error) from error
+        self._take(plan)
+
+    def take_disk(self, plan: Plan) -> None:
+        """From now on the file is what the plan says, as on the disk; what it was before is kept beside it."""
+        if self.is_saved and plan.text != self.text:
+            keep_previous(self.path, self.text)
+        self._take(plan)
+
+    def _take(self, plan: Plan) -> None:
+        self.text, self.settings, self.is_saved = plan.text, plan.settings, True
+
+    def save(self, changes: Mapping[str, Any]) -> Plan:
+        """Change the file on the disk; raises ValidationError or `RigFileError`, and then nothing has changed."""
+        plan = self.plan(changes)
+        with self.stage(plan) as staged:
+            self.commit(staged, plan)
+        return plan
+
+    def _not_saved(self, error: OSError) -> RigFileError:
+        return RigFileError(
+            f"the rig file {self.path} cannot be saved: {error.strerror or error}; nothing was changed"
+        )

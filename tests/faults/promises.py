@@ -1,0 +1,96 @@
+"""What the rig promises for each fault of the catalogue, with the trial that shows it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from control.simulation.faults.injection import KINDS
+from control.simulation.faults.kind import FaultKind
+from control.snapshot import RigState
+from tests.faults.invariants import OVERSHOOT, OVERSHOOT_UNSENSED
+
+RUNNING, HELD, DISARMED, FAULT = RigState.RUNNING, RigState.HELD, RigState.DISARMED, RigState.FAULT
+
+RESUME = "resume"
+ARM = "arm"
+RESET = "reset, then arm"
+CARRY_ON = "nothing to do"
+GO_ON = {RUNNING: CARRY_ON, HELD: RESUME, DISARMED: ARM, FAULT: RESET}
+
+FRAME = 17
+"""Milliseconds: a frame at 60 Hz, after which the loop looks again."""
+
+
+@dataclass(frozen=True, slots=True)
+class Promise:
+    """after: the state it leads to.  code: of the line in the log; "" for a rig that carries on.
+
+    noticed, zero: at most so long after the fault, ms of the board; None where the robot walks on.
+    parameters: of the trial.  watch: how long the trial looks, s.  asleep: the loop itself stands still, ms.
+    overshoot: share by which a current may pass its limit.  tries: of the operator to go on.
+    """
+
+    name: str
+    sees: str
+    after: RigState
+    code: str = ""
+    noticed: int | None = None
+    zero: int | None = None
+    parameters: Mapping[str, Any] = field(default_factory=dict)
+    watch: float = 1.5
+    asleep: int = 0
+    overshoot: float = OVERSHOOT
+    tries: int = 1
+
+    @property
+    def kind(self) -> FaultKind:
+        return KINDS[self.name]
+
+
+_PROMISES = (
+    Promise("camera_unplugged", "no frame for 0.10 s", HELD, "camera", 104, 105),
+    Promise("camera_frozen", "the camera repeats one picture", HELD, "frozen", 3 * FRAME, 4 * FRAME),
+    Promise("camera_late", "no frame for 0.10 s, then how old the frames are", HELD, "camera", 104, 105),
+    Promise("camera_drops", "a lower rate, nothing else", RUNNING),
+    Promise("camera_mirrored", "the robot is not where it should be", HELD, "lost", 217, 218, tries=2),
+    Promise("robot_hidden", "the robot is not seen", HELD, "lost", 217, 218),
+    Promise("sighting_jumps", "the robot is not where it should be", HELD, "lost", 217, 218),
+    Promise("sighting_nan", "the robot is not seen; refused sightings are counted", HELD, "lost", 217, 218),
+    Promise("camera_cropped", "pictures of another size", DISARMED, "frame", 2 * FRAME, 3 * FRAME),
+    Promise("camera_timeless", "no frame; refused frames are counted", HELD, "camera", 104, 105),
+    Promise("line_unplugged", "the port is gone", DISARMED, "link", 2 * FRAME, 155),
+    Promise("line_silent", "no word from the board", DISARMED, "telemetry", 320, 325),
+    Promise("line_jammed", "the port takes no bytes", DISARMED, "link", 2 * FRAME, 155),
+    Promise("line_garbage", "the share of broken messages", DISARMED, "line", 700, 705),
+    Promise("line_loses", "a longer round trip, nothing else", RUNNING),
+    Promise("line_repeats", "nothing: old messages are not obeyed", RUNNING),
+    Promise("line_reorders", "nothing: old messages are not obeyed", RUNNING),
+    Promise("line_slow", "the robot is not where it should be", HELD, "lost", 400, 505),
+    Promise("board_reset", "the board was reset", FAULT, "board-reset", 2 * FRAME, 2),
+    Promise("supply_off", "the supply is low or off", DISARMED, "supply", 2 * FRAME, 3 * FRAME),
+    Promise("supply_low", "the supply is low or off", DISARMED, "supply", 2 * FRAME, 3 * FRAME),
+    Promise("driver_fault", "the board reports: driver_fault", FAULT, "board", 2 * FRAME, 2),
+    Promise("coil_open", "which coil shows no current", DISARMED, "coil", 200, 201),
+    Promise(
+        "sense_dead", "which coil shows no current", DISARMED, "coil", 200, 201,
+        overshoot=OVERSHOOT_UNSENSED,
+    ),
+    Promise("sense_wrong", "the board reports: over_current", FAULT, "board", 3 * FRAME, 50),
+    Promise("coil_resistance", "which coil shows less current than commanded", DISARMED, "sense", 250, 251),
+    Promise("coil_swapped", "the robot is not where it should be", HELD, "lost", 400, 401),
+    Promise("loop_stalls", "the loop stood still", HELD, "stall", 400, 151, asleep=400),
+    Promise("computer_sleeps", "the computer slept", HELD, "clock", 2000, 151, asleep=2000, watch=3.0),
+    Promise("report_nan", "no word from the board; refused reports are counted", DISARMED, "telemetry", 320, 325),
+    Promise("controller_raises", "what the controller raised", FAULT, "controller", 2 * FRAME, 3 * FRAME),
+    Promise("controller_hangs", "the loop stood still", HELD, "clock", 3034, 151, asleep=3034, watch=5.0),
+    Promise("controller_nonsense", "what the controller returned", FAULT, "controller", 2 * FRAME, 3 * FRAME),
+    Promise("robot_put", "the robot is not where it should be", HELD, "lost", 217, 218),
+    Promise(
+        "coil_hot", "which coil is too hot, and how long it must rest", HELD, "heat", 2 * FRAME, 3 * FRAME,
+        {"heat_percent": 105.0},
+    ),
+)  # fmt: skip
+
+PROMISES = {promise.name: promise for promise in _PROMISES}

@@ -1,0 +1,94 @@
+"""Tries every fault out in simulated time and writes the table "What happens when…" into SAFETY.md.
+
+python -m tests.faults.table
+"""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+from control.snapshot import RigState
+from tests.faults.promises import GO_ON, PROMISES, RESET
+from tests.faults.trial import Trial, try_out
+
+DOCUMENT = Path(__file__).parents[2] / "SAFETY.md"
+BEGIN = "<!-- the table is written by `make safety` -->"
+END = "<!-- end of the table -->"
+HEAD = ("fault", "what you see", "state after", "zero promised, ms", "zero measured, ms", "how to go on")
+
+
+@dataclass(frozen=True, slots=True)
+class OutsideEvent:
+    """What cannot be injected from inside: tried with real processes and signals by the tests it names."""
+
+    title: str
+    sees: str
+    after: str
+    promised: str
+    go_on: str
+    tests: str
+
+
+EVENTS = (
+    OutsideEvent(
+        "Program or computer dies", "the page is gone", "board alone", "200",
+        "start pivotrig; it is disarmed", "test_computer_dies",
+    ),
+    OutsideEvent(
+        "Program or computer freezes", "the page stands still", "held or disarmed", "200", "resume or arm",
+        "test_computer_dies",
+    ),
+    OutsideEvent(
+        "Ctrl-C, SIGTERM, terminal closed", "the page says that the server is gone", "ended",
+        "at once, before anything is closed", "start pivotrig; it is disarmed", "test_ending_with_viewers",
+    ),
+    OutsideEvent(
+        "Emergency stop: page, `POST /api/v1/estop`, `kill -USR1`", "emergency stop", "fault", "at once", RESET,
+        "test_computer_dies",
+    ),
+)  # fmt: skip
+
+
+def document_rows(table: str) -> list[tuple[str, ...]]:
+    """The cells of a table in Markdown, without its head."""
+    lines = [line for line in table.splitlines() if line.startswith("|")]
+    return [tuple(cell.strip() for cell in line.strip("|").split(" | ")) for line in lines[2:]]
+
+
+def table_of(trials: list[Trial]) -> str:
+    rows = [HEAD, tuple("---" for _ in HEAD), *map(_row, trials), *map(_outside_row, EVENTS)]
+    return "".join(f"| {' | '.join(row)} |\n" for row in rows)
+
+
+def _row(trial: Trial) -> tuple[str, ...]:
+    promise, reaction = trial.promise, trial.reaction
+    walks_on = promise.after is RigState.RUNNING
+    return (
+        promise.kind.title,
+        promise.sees,
+        promise.after.value,
+        "–" if walks_on else str(promise.zero),
+        "–" if walks_on else str(reaction.zero),
+        GO_ON[promise.after],
+    )
+
+
+def _outside_row(event: OutsideEvent) -> tuple[str, ...]:
+    return event.title, event.sees, event.after, event.promised, f"`{event.tests}`", event.go_on
+
+
+def main() -> None:
+    trials = []
+    for promise in PROMISES.values():
+        trials.append(try_out(promise))
+        print(f"{promise.kind.title}: zero after {trials[-1].reaction.zero} ms", file=sys.stderr)
+    text = DOCUMENT.read_text(encoding="utf-8")
+    before, _, rest = text.partition(BEGIN)
+    _, _, after = rest.partition(END)
+    DOCUMENT.write_text(f"{before}{BEGIN}\n{table_of(trials)}{END}{after}", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

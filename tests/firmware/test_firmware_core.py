@@ -1,0 +1,378 @@
+"""The C++ core does what the twin does, byte for byte and step for step, in one exchange of each kind."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import Any
+
+import pytest
+from twins import ARMING, CALM, CONFIGURE, NOMINAL, Twins
+
+from control.link import messages, wire
+from control.link.conversion import phase, phase_rate
+from control.link.messages import BoardCode, Flag, Hello, Refusal, ResetCause, Stop
+from control.simulation.twin import CONFIGURATION_LIMITS
+
+DEAD_SUPPLY = 0
+FULL = 1023
+
+
+@pytest.fixture
+def twins() -> Iterator[Twins]:
+    with Twins() as pair:
+        yield pair
+
+
+@pytest.fixture
+def ready(twins: Twins) -> Twins:
+    twins.say(Hello())
+    twins.say(CONFIGURE)
+    return twins
+
+
+@pytest.fixture
+def driving(ready: Twins) -> Twins:
+    ready.say(ARMING)
+    ready.run(20)
+    return ready
+
+
+def walk(twins: Twins, ticks: int, **changes: Any) -> None:
+    """Commands at 60 Hz with these values."""
+    for _ in range(ticks):
+        twins.say(replace(CALM, **changes))
+        twins.run(16)
+
+
+def refused(twins: Twins) -> Refusal:
+    twins.run(20)
+    return Refusal(twins.reports[-1].last_refusal)
+
+
+def test_a_boot_is_announced_with_its_cause() -> None:
+    for cause in ResetCause:
+        with Twins(0xFFFF, cause) as twins:
+            twins.drain()
+            [packet] = twins.words(twins.heard)
+            assert isinstance(packet.message, messages.Banner)
+            assert (packet.boot_id, packet.message.reset_cause) == (0xFFFF, cause)
+
+
+def test_a_walk_with_sweeps_both_ways_and_pivot_switches(driving: Twins) -> None:
+    for pivot, rate in ((1, 1.5), (-1, -1.5), (1, 0.0), (-1, 2.0)):
+        walk(driving, 30, pivot=pivot, rate=phase_rate(rate), heading_goal=phase(math.copysign(0.5, rate)))
+    assert driving.twin.state == BoardCode.DRIVING
+    headings = {report.heading for report in driving.reports}
+    elevations = {report.elevation for report in driving.reports}
+    assert len(headings) > 40
+    assert {-4551, 4551} < elevations
+
+
+def test_a_goal_that_lies_behind_means_standing_still(driving: Twins) -> None:
+    for rate in (1.0, -1.0):
+        walk(driving, 5, rate=phase_rate(rate), heading_goal=phase(-0.5 * rate))
+        assert driving.twin.motion.heading == 0
+
+
+def test_a_field_beyond_the_coils_is_scaled_back(driving: Twins) -> None:
+    allocation = (16384, 3000, -2000, 500, -16384, 0, 32767, -32768, 32767)
+    for heading in (0.0, 0.9, 2.0, -2.5):
+        driving.say(replace(ARMING, start_heading=phase(heading), field=20000, allocation=allocation))
+        driving.run(1)
+        for _ in range(8):
+            driving.say(replace(CALM, heading_goal=phase(heading), field=20000, allocation=allocation))
+            driving.run(40)
+        assert driving.reports[-1].flags & Flag.SATURATED
+        assert driving.reports[-1].duty != (0, 0, 0)
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_a_full_duty_is_reported_as_such(twins: Twins, sign: int) -> None:
+    """The strongest slew of the field: a coil that is told to be large wants more than the supply.
+
+    What remains of a step makes it 799 or 800 of 800.
+    """
+    twins.say(Hello())
+    twins.say(replace(CONFIGURE, field_slew=65535, inductances=(16000, 16000, 16000)))
+    allocation = tuple(sign * entry for entry in CALM.allocation)
+    twins.say(replace(ARMING, tilt=0, allocation=allocation))
+    twins.run(60)
+    assert max(sign * report.duty[1] for report in twins.reports) >= 799 * 32768 // 800 - 8
+
+
+@pytest.mark.parametrize("shares", [(3, 2, 1), (1, 2, 3), (2, 3, 1)])
+def test_the_coil_that_is_farthest_beyond_its_limit_scales_all_three(twins: Twins, shares: Any) -> None:
+    """One coil after the other is a little, more and most beyond its limit."""
+    one, two, three = (2000 // share for share in shares)
+    twins.say(Hello())
+    twins.say(replace(CONFIGURE, current_limits=(one, two, three)))
+    allocation = (*(0, 16384, 0), *(0, 16384, 0), *(0, 16384, 0))
+    twins.say(replace(ARMING, tilt=0, allocation=allocation, time_to_live=200))
+    twins.run(199)
+    largest = max(shares)
+    for current, limit, share in zip(twins.reports[-1].commanded, (one, two, three), shares, strict=True):
+        assert current == pytest.approx(limit * share / largest, abs=8)
+
+
+def test_a_command_that_is_not_renewed_expires(driving: Twins) -> None:
+    driving.say(replace(CALM, time_to_live=1))
+    driving.run(1)
+    assert driving.twin.state == BoardCode.EXPIRED
+    driving.say(ARMING)
+    driving.say(replace(CALM, time_to_live=65535))
+    driving.run(199)
+    assert driving.twin.state == BoardCode.DRIVING
+    driving.run(1)
+    assert driving.twin.state == BoardCode.EXPIRED
+
+
+@pytest.mark.parametrize("place", [0, 1, 2])
+def test_over_current_in_any_coil_latches(driving: Twins, place: int) -> None:
+    high = tuple(FULL if coil == place else 0 for coil in range(3))
+    for _ in range(2):
+        driving.tick(high)  # type: ignore[arg-type]
+    driving.tick((0, 0, 0))
+    for _ in range(2):
+        driving.tick(high)  # type: ignore[arg-type]
+    assert driving.twin.state == BoardCode.DRIVING
+    driving.tick(high)  # type: ignore[arg-type]
+    assert driving.twin.state == BoardCode.FAULT
+    for message in (CALM, ARMING, Stop(), CONFIGURE):
+        driving.say(message)
+    driving.run(20)
+    assert driving.reports[-1].flags & Flag.OVER_CURRENT
+    driving.say(Hello())
+    driving.run(20)
+    assert not driving.reports[-1].flags & Flag.OVER_CURRENT
+    assert driving.reports[-1].configuration_hash == 0
+
+
+def test_a_driver_fault_latches_while_driving_and_not_otherwise(ready: Twins) -> None:
+    ready.set_driver_fault(True)
+    ready.run(20)
+    assert ready.twin.state == BoardCode.READY
+    ready.say(ARMING)
+    ready.run(20)
+    assert ready.twin.state == BoardCode.FAULT
+    assert ready.reports[-1].flags & Flag.DRIVER_FAULT
+
+
+def test_a_stop_is_obeyed_whatever_its_numbers(driving: Twins) -> None:
+    driving.say(Stop(), sequence=65531, boot_id=99)
+    assert driving.twin.state == BoardCode.STOPPED
+    driving.run(30)
+    assert driving.reports[-1].last_sequence == driving.twin._last_sequence
+
+
+def test_a_stop_before_the_first_configuration_changes_nothing(twins: Twins) -> None:
+    twins.say(Stop())
+    assert twins.twin.state == BoardCode.BOOTED
+
+
+@pytest.mark.parametrize("scale", [0, 1, 55000, 65000])
+def test_the_supply_goes_up_and_down(twins: Twins, scale: int) -> None:
+    twins.say(Hello())
+    twins.say(replace(CONFIGURE, supply_scale=scale))
+    twins.say(ARMING)
+    for count in (NOMINAL, NOMINAL, 300, 335, 336, DEAD_SUPPLY, 1, FULL, NOMINAL):
+        twins.say(CALM)
+        for _ in range(12):
+            twins.tick((50, 20, 10), count)
+    assert bool(twins.reports[-1].flags & Flag.SUPPLY_ASSUMED) == (scale == 0)
+    assert (twins.reports[-1].supply == 0) == (scale <= 1)
+
+
+def test_a_sense_that_reads_full_scale_or_nothing_at_all(driving: Twins) -> None:
+    """What it reports fits 16 bits although a full reading is 35.7 A."""
+    driving.say(Stop())
+    for counts in ((FULL, FULL, FULL), (0, 0, 0), (1, 2, 3)):
+        for _ in range(30):
+            driving.tick(counts)
+    assert any(report.measured[0] == 32767 for report in driving.reports)
+
+
+def test_currents_of_both_directions_are_measured_with_their_own_gains(twins: Twins) -> None:
+    twins.say(Hello())
+    twins.say(replace(CONFIGURE, sense_gains=(4464, 11161, 11161, 4464, 8929, 7000)))
+    for sign in (1, -1):
+        twins.say(replace(ARMING, start_heading=phase(0.7 * sign), heading_goal=phase(0.7 * sign), tilt=2000))
+        for _ in range(20):
+            twins.say(replace(CALM, heading_goal=phase(0.7 * sign), tilt=2000))
+            twins.run(16)
+        assert twins.twin.state == BoardCode.DRIVING
+    assert any(report.measured[0] < 0 for report in twins.reports)
+    assert any(report.measured[0] > 0 for report in twins.reports)
+
+
+@pytest.mark.parametrize(
+    ("changes", "reason"),
+    [
+        ({"flags": 2}, Refusal.FLAGS),
+        ({"flags": 3}, Refusal.FLAGS),
+        ({"pivot": 0}, Refusal.PIVOT),
+        ({"pivot": 2}, Refusal.PIVOT),
+        ({"rate": CONFIGURE.max_rate + 1}, Refusal.RATE),
+        ({"rate": -CONFIGURE.max_rate - 1}, Refusal.RATE),
+        ({"tilt": CONFIGURE.max_tilt + 1}, Refusal.TILT),
+        ({"field": CONFIGURE.max_field + 1}, Refusal.FIELD),
+        ({"time_to_live": 0}, Refusal.LIFETIME),
+        ({"rate": CONFIGURE.max_rate, "tilt": CONFIGURE.max_tilt, "field": 20000}, Refusal.NONE),
+        ({"rate": -CONFIGURE.max_rate, "tilt": 0, "field": 0, "time_to_live": 1}, Refusal.NONE),
+    ],
+)
+def test_a_drive_outside_its_limits_is_refused(driving: Twins, changes: dict, reason: Refusal) -> None:
+    driving.say(replace(CALM, **changes))
+    assert refused(driving) == reason
+
+
+def test_a_drive_without_arm_edge_configuration_or_greeting_is_refused(twins: Twins) -> None:
+    twins.say(ARMING)
+    twins.say(CONFIGURE)
+    twins.say(Hello())
+    twins.say(ARMING)
+    assert refused(twins) == Refusal.STATE
+    twins.say(CONFIGURE)
+    twins.say(CALM)
+    assert refused(twins) == Refusal.STATE
+    assert twins.twin.state == BoardCode.READY
+
+
+@pytest.mark.parametrize("changes", [{"sequence": 2}, {"sequence": 1003}, {"boot_id": 8}])
+def test_a_message_out_of_order_or_for_another_boot_is_not_obeyed(ready: Twins, changes: dict) -> None:
+    ready.say(ARMING, **changes)
+    assert ready.twin.state == BoardCode.READY
+    ready.run(20)
+    assert ready.reports[-1].stale + ready.reports[-1].refused == 1
+
+
+@pytest.mark.parametrize("sequence", [3, 1002])
+def test_a_message_within_the_window_is_obeyed(ready: Twins, sequence: int) -> None:
+    ready.say(ARMING, sequence=sequence)
+    assert ready.twin.state == BoardCode.DRIVING
+
+
+def test_another_version_is_greeted_but_not_obeyed(twins: Twins) -> None:
+    twins.say(Hello(), version=9)
+    twins.say(Hello())
+    twins.say(CONFIGURE, version=9)
+    assert refused(twins) == Refusal.VERSION
+    assert twins.reports[-1].bad == 1
+
+
+def test_a_greeting_keeps_the_configuration_and_zeroes_the_drive(driving: Twins) -> None:
+    driving.say(Hello())
+    assert driving.twin.state == BoardCode.READY
+    driving.run(20)
+    assert driving.reports[-1].configuration_hash == wire.configuration_hash(CONFIGURE)
+
+
+def test_a_message_of_the_other_direction_is_refused(ready: Twins) -> None:
+    ready.say(messages.Banner((1, 2, 3), 4, 5))
+    assert refused(ready) == Refusal.DIRECTION
+    ready.say(messages.Banner((1, 2, 3), 4, 5), version=3)
+    ready.say(ready.reports[-1])
+    ready.run(20)
+    assert ready.reports[-1].refused == 3
+
+
+def just_outside() -> list[tuple[str, Any]]:
+    """Every allowed range of a configuration, one below and one above where the wire can say it."""
+    cases: list[tuple[str, Any]] = []
+    for name, (low, high) in CONFIGURATION_LIMITS.items():
+        value = getattr(CONFIGURE, name)
+        top = 2**32 - 1 if name == "max_rate" else 65535
+        for limit in (low - 1, low, high, high + 1):
+            if not 0 <= limit <= top:
+                continue
+            if not isinstance(value, tuple):
+                cases.append((name, limit))
+                continue
+            cases += [(name, (*value[:place], limit, *value[place + 1 :])) for place in range(len(value))]
+    return cases
+
+
+@pytest.mark.parametrize(("name", "value"), just_outside())
+def test_a_configuration_at_the_edge_of_a_range(twins: Twins, name: str, value: Any) -> None:
+    twins.say(Hello())
+    twins.say(replace(CONFIGURE, **{name: value}))
+    twins.say(ARMING)
+    twins.run(20)
+
+
+def test_a_coil_that_is_too_fast_to_regulate_is_refused(twins: Twins) -> None:
+    twins.say(Hello())
+    twins.say(replace(CONFIGURE, resistances=(2500, 2000, 2801)))
+    assert refused(twins) == Refusal.CONFIGURATION
+    twins.say(replace(CONFIGURE, resistances=(2500, 2000, 2800)))
+    assert twins.twin.state == BoardCode.READY
+
+
+def test_a_configuration_is_refused_while_driving(driving: Twins) -> None:
+    driving.say(CONFIGURE)
+    assert refused(driving) == Refusal.STATE
+
+
+def test_a_configuration_whose_checksum_is_zero_has_the_hash_one(twins: Twins) -> None:
+    """0 stands for no configuration."""
+    body = next(layout for layout in wire.LAYOUTS if layout.message is messages.Configure)
+    zero = next(
+        message
+        for supply in range(5000, 50001)
+        for message in [replace(CONFIGURE, supply=supply)]
+        for field in (message, replace(message, max_field=19999))
+        if wire.crc_hqx(body.pack(field), 0xFFFF) == 0
+        for message in [field]
+    )
+    twins.say(Hello())
+    twins.say(zero)
+    twins.run(20)
+    assert twins.reports[-1].configuration_hash == 1
+
+
+def test_broken_frames_are_counted_once_each(ready: Twins) -> None:
+    frame = wire.encode(CALM, 3, 7)
+    unknown = wire.cobs.encode(bytes.fromhex("09 01 0300 0700") + b"\x12\x34")
+    short = wire.encode(CALM, 3, 7)[:-3] + b"\0"
+    pieces = (
+        *(
+            b"\0\0",
+            b"\x01\0",
+            b"\x05\x01\0",
+            b"\xff" * 64 + b"\0",
+            b"\x01" * 65 + b"\0",
+            b"\x02" * 200 + b"\0",
+        ),
+        *(frame[:9] + b"\x55" + frame[10:], b"\0" + unknown + b"\0", short),
+    )
+    for piece in pieces:
+        for byte in piece:
+            ready.receive(bytes([byte]))
+    wrong = bytes.fromhex("05 01 0300 0700 00")  # a Stop with a body
+    unknown = bytes.fromhex("63 01 0300 0700")
+    for payload in (wrong, unknown):
+        crc = wire.crc_hqx(payload, 0xFFFF).to_bytes(2, "little")
+        ready.receive(b"\0" + wire.cobs.encode(payload + crc) + b"\0")
+    ready.run(20)
+    assert ready.reports[-1].bad == 10
+
+
+def test_a_message_that_finds_no_room_is_dropped_whole(twins: Twins) -> None:
+    """The banner of 17 bytes fits 15 times, and reports of 57 bytes as they can."""
+    for number in range(1, 40):
+        frame = wire.encode(Hello(), number, 0)
+        twins.twin.receive(frame)
+        twins.core.receive(frame)
+    for _ in range(50):
+        twins.tick((0, 0, 0), most=5)
+    twins.drain()
+    assert len(twins.heard) > 255
+
+
+def test_a_reset_begins_anew_with_the_next_boot_id(driving: Twins) -> None:
+    with Twins(8, ResetCause.WATCHDOG) as after:
+        after.say(ARMING, sequence=driving.sequence + 1, boot_id=7)
+        after.run(30)
+        assert after.twin.state == BoardCode.BOOTED
+        assert not after.reports
