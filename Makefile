@@ -3,7 +3,7 @@ SHELL := /bin/bash
 BIN := .venv/bin
 JOBS ?= 2
 
-.PHONY: run setup test test-full lint format bench safety clean browser help
+.PHONY: run setup test test-full lint format bench safety clean browser toolchain help
 
 help: ## show this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | expand -t 14
@@ -13,12 +13,12 @@ run: .stamps/run ## open the dashboard of the simulated rig
 
 setup: .stamps/dev ## make the environment, with all that tests need
 
-test: .stamps/dev browser ## run every test
+test: .stamps/dev browser toolchain ## run every test
 	$(BIN)/pytest -n $(JOBS) -m "not exclusive"
 	$(BIN)/pytest -m exclusive
 
 test-full: export PIVOTRIG_FULL := 1
-test-full: .stamps/dev browser ## the same tests with the full numbers of repetitions
+test-full: .stamps/dev browser toolchain ## the same tests with the full numbers of repetitions
 	$(BIN)/pytest -n $(JOBS) -m "not exclusive"
 	$(BIN)/pytest -m exclusive
 
@@ -41,6 +41,13 @@ bench: .stamps/dev ## measure, against a reference in the same run
 browser:
 	@bash .ci/need --program chromium chromium
 	@bash .ci/need --library libatomic.so.1 libatomic1
+
+toolchain:
+	@bash .ci/need --program avr-g++ gcc-avr
+	@bash .ci/need --file /usr/lib/avr/include/avr/io.h avr-libc
+	@bash .ci/need --program g++ g++
+	@bash .ci/need --file /usr/include/simavr/sim_avr.h libsimavr-dev
+	@bash .ci/need --file /usr/include/libelf.h libelf-dev
 
 .stamps/run: pyproject.toml uv.lock
 	@bash .ci/environment --no-dev

@@ -25,6 +25,7 @@ from control.snapshot import Snapshot
 from control.trajectories import OutsideWorkspace
 from control.trajectories.waypoint_file import WaypointFileError
 from server.commands import calibrate, firmware
+from server.commands.consent import YesOption, ask_for_consent
 from server.commands.doctor import doctor
 from server.commands.outcome import (
     FAILED,
@@ -135,6 +136,7 @@ def run(
     seed: Annotated[int | None, typer.Option(help="Seed of the simulation.")] = None,
     rig: RigOption = None,
     plugin: PluginOption = None,
+    yes: YesOption = False,
     as_json: Annotated[bool, typer.Option("--json", help="One JSON object on stdout.")] = False,
 ) -> None:
     """Walk one path and print how well that went."""
@@ -150,10 +152,10 @@ def run(
         passes,
         duration,
     )
-    _run(rig_file, request, as_json)
+    _run(rig_file, request, as_json, consent=ask_for_consent(rig_file, yes=yes))
 
 
-def _run(rig_file: RigFile, request: RunRequest, as_json: bool) -> None:
+def _run(rig_file: RigFile, request: RunRequest, as_json: bool, *, consent: bool) -> None:
     from control.link.conversion import LinkError
     from server.api.runs import metrics_json
     from server.assembly import build_machine
@@ -165,7 +167,8 @@ def _run(rig_file: RigFile, request: RunRequest, as_json: bool) -> None:
         machine = build_machine(rig_file, realtime=not rig_file.is_simulated)
         id = new_id()
         with _Progress() as (progress, task), coils_stop_first(machine.stop_coils):
-            done = run_headless(machine, id, request, lambda snapshot: _show(progress, task, snapshot))
+            show = lambda snapshot: _show(progress, task, snapshot)  # noqa: E731
+            done = run_headless(machine, id, request, show, consent=consent)
     except (Refused, LinkError, CameraError) as error:
         raise fail(str(error), REFUSED) from error
     except OSError as error:

@@ -40,10 +40,15 @@ class GaitCalibration:
     sightings: int
 
 
-def calibrate_gait(machine: Machine, id: str, gait: Gait, star: Star) -> GaitCalibration:
-    """Arm, walk, disarm, identify. Raises `Refused`, and `TooLittle` when the walk does not show enough."""
+def calibrate_gait(
+    machine: Machine, id: str, gait: Gait, star: Star, *, consent: bool = False
+) -> GaitCalibration:
+    """Arm (consent: as in `run_headless`), walk, disarm, identify.
+
+    Raises `Refused`, and `TooLittle` when the walk does not show enough.
+    """
     recorder = _Recorder(machine, star)
-    run = run_headless(machine, id, _request(gait, star), recorder.watch)
+    run = run_headless(machine, id, _request(gait, star), recorder.watch, consent=consent)
     model = identify(recorder.samples, switch_time=machine.settings.link.ramp_ms * MS)
     return GaitCalibration(model, run, len(recorder.samples))
 

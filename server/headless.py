@@ -31,13 +31,18 @@ Watch = Callable[[Snapshot], None]
 """Told of every tick, for progress and for tests that compare with the truth."""
 
 
-def run_headless(machine: Machine, id: str, request: RunRequest, watch: Watch | None = None) -> HeadlessRun:
-    """Arm, walk, disarm. Raises `Refused` when the rig does not get ready or a fault ends the run."""
+def run_headless(
+    machine: Machine, id: str, request: RunRequest, watch: Watch | None = None, *, consent: bool = False
+) -> HeadlessRun:
+    """Arm, walk, disarm. Raises `Refused` when the rig does not get ready or a fault ends the run.
+
+    consent: a person agrees that current flows, without which a real rig does not arm.
+    """
     started, begin = time.perf_counter(), machine.camera.now()
     try:
         machine.open()
         _until_ready(machine, watch)
-        machine.loop.arm(request.selection.gait)
+        machine.loop.arm(request.selection.gait, consent=consent)
         machine.loop.start(id, request)
         ended = _walk(machine, watch)
         machine.loop.disarm("run finished")

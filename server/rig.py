@@ -220,7 +220,8 @@ class Rig:
         if self.failure is not None or self._lost:
             raise Refused(self.snapshot.reason)
         answer = await self._thread.call(request, lambda: self.snapshot.reason)
-        self.snapshot = await self._thread.begin(self._look_again)
+        with contextlib.suppress(Refused):  # a tick that hangs has been told of; the request is carried out
+            self.snapshot = await self._thread.call(self._look_again, lambda: self.snapshot.reason)
         self._tell()
         return answer
 

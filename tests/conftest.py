@@ -20,7 +20,9 @@ GRACE = 2.0
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    parser.addoption("--board", metavar="PORT", help="also put a real board, on this port, to the contract's tests")
+    parser.addoption(
+        "--board", metavar="PORT", help="also put a real board, on this port, to the contract's tests"
+    )
 
 
 @pytest.fixture(autouse=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import signal
@@ -63,20 +64,23 @@ class Server:
 
     def start_walking(self) -> None:
         """As a person would: once more when a busy machine has made the rig let go."""
-        poll(self._try_to_start, bool)
-        self.until(lambda state: state["run"] is not None and state["run"]["elapsed_s"] > 0.5)
+        poll(self._is_walking, bool)
 
-    def _try_to_start(self) -> bool:
+    def _is_walking(self) -> bool:
         state = self.until(lambda state: state["tracking"] == "locked")
-        try:
-            if state["rig"] == "fault":
-                self.post("/reset")
-            if state["rig"] in ("fault", "disarmed"):
-                self.post("/arm")
-            self.post("/runs", {"gait": {"sweep_deg": 10.0}})
-        except ServerRefused:
-            return False
-        return True
+        if state["rig"] == "running":
+            return state["run"] is not None and state["run"]["elapsed_s"] > 0.5
+        with contextlib.suppress(ServerRefused):
+            self._start_from(state["rig"])
+        return False
+
+    def _start_from(self, rig: str) -> None:
+        if rig == "fault":
+            self.post("/reset")
+        elif rig != "disarmed":
+            self.post("/disarm")
+        self.post("/arm")
+        self.post("/runs", {"gait": {"sweep_deg": 10.0}})
 
 
 def poll(ask: Callable[[], T], condition: Callable[[T], bool]) -> T:

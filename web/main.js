@@ -1,5 +1,6 @@
 /** The page. */
 import { Bar, stateWord } from "./bar/bar.js";
+import { ConsentDialog } from "./bar/consent.js";
 import { Notices } from "./bar/notices.js";
 import { Camera } from "./camera/camera.js";
 import { Charts } from "./charts/charts.js";
@@ -21,6 +22,7 @@ function Page({ retry }) {
     <div class="page" data-connection=${lost ? "lost" : "fine"}>
       <${Bar} />
       <${Notices} retry=${retry} />
+      <${ConsentDialog} />
       <main inert=${lost}>
         <${Camera} />
         <${Scene} />

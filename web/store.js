@@ -25,6 +25,8 @@ let state = {
   /** Text beside a field, by "controller.gain"-like keys: what the page refused, and what the server refused. */
   draftErrors: {},
   serverErrors: {},
+  /** The question before a real rig is armed is on the page. */
+  consentAsked: false,
   /** Name of the action under way, or null. */
   busy: null,
   messages: [],

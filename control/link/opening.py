@@ -13,11 +13,11 @@ from typing import Any
 import serial
 
 from control.link.conversion import LinkError
+from control.link.device import Device
 from control.link.line import SerialLine
 
 WRITE_TIMEOUT = 0.03
-"""A port that takes no bytes for so long is jammed, s: two frames, once. Shorter, and pyserial, which looks at the
-clock only after it has written, would call a port jammed when the computer was busy for that long."""
+"""A port that takes no bytes for so long is jammed, s: two frames, once."""
 
 PORT_ERRORS = (OSError, termios.error)
 """What a port that fails raises: pyserial lets the terminal's own error through, which is no OSError."""
@@ -53,6 +53,7 @@ def open_serial(port: str, baud: int) -> SerialLine:
         raise _refusal(port, baud, error) from error
     if isinstance(opened, serial.Serial):
         _shut_others_out(opened)
+        return Device(opened, WRITE_TIMEOUT)
     return opened
 
 

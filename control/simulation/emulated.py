@@ -14,13 +14,17 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
+import platformdirs
+
 from control.firmware.build import BuildError, build
 from control.firmware.emulator.build import build_emulator, is_stale
 from control.simulation.bridges import Winding
 from control.simulation.emulator_port import EmulatorPort
 
-FOLDER = Path(__file__).parents[2] / "build" / "firmware"
-"""Where a checkout keeps what it has built."""
+_ROOT = Path(__file__).parents[2]
+_CACHE = platformdirs.user_cache_path("pivotrig")
+FOLDER = (_ROOT / "build" if (_ROOT / "pyproject.toml").exists() else _CACHE) / "firmware"
+"""What has been built is kept in a checkout's own folder; an installed program has none."""
 
 FIRMWARE = Path(__file__).parents[1] / "firmware"
 LINGER = 5.0

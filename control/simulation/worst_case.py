@@ -40,7 +40,7 @@ CONFIGURE = messages.Configure(
     max_field=20000,
     max_rate=0x0FFFFFFF,
     max_tilt=10923,
-    sense_gains=(8929,) * 6,
+    sense_gains=(8929, 8929, 8929, 8929, 8929, 8929),
     supply_scale=55000,
 )
 

@@ -16,11 +16,11 @@ from control.coils import AXES, Axis
 from control.link.conversion import LinkError
 from control.safety import Refused
 from server.assembly import FULL_FIELD, Machine
-from server.commands.outcome import FAILED, REFUSED, USAGE, console, fail
+from server.commands.consent import ask_for_consent
+from server.commands.outcome import FAILED, REFUSED, USAGE, fail
 from server.settings import MS, RigFile
 from server.signals import coils_stop_first
 
-YesOption = Annotated[bool, typer.Option("--yes", help="Current may flow: do not ask.")]
 SaveOption = Annotated[
     bool, typer.Option("--save", help="Write the result into the rig file; the one before is kept beside it.")
 ]
@@ -54,8 +54,7 @@ def opened(rig_file: RigFile, *, realtime: bool, yes: bool) -> Iterator[tuple[Ma
     """The rig with its board greeted and its coils at zero, as they are again at the end, whatever happens."""
     from server.assembly import build_machine
 
-    if not (rig_file.is_simulated or yes):
-        _ask_for_consent()
+    ask_for_consent(rig_file, yes=yes)
     with explained():
         machine = build_machine(rig_file, realtime=realtime)
         try:
@@ -73,14 +72,6 @@ def opened(rig_file: RigFile, *, realtime: bool, yes: bool) -> Iterator[tuple[Ma
                 yield machine, bench
         finally:
             machine.close()
-
-
-def _ask_for_consent() -> None:
-    console.print("This puts current through the coils of a real rig.", style="yellow")
-    if not typer.confirm(
-        "Hands, tools and cards are away from the coils, and somebody watches them?", err=True
-    ):
-        raise fail("nothing was driven", REFUSED)
 
 
 def coils_asked_for(names: list[str] | None) -> list[Axis]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 from dataclasses import asdict
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from pydantic import ValidationError
@@ -18,6 +18,7 @@ from control.safety import Refused
 from server.commands.calibrate_coils import coils
 from server.commands.calibrate_registration import polarity, registration
 from server.commands.calibrate_windings import sense, windings
+from server.commands.consent import YesOption, ask_for_consent
 from server.commands.outcome import (
     FAILED,
     REFUSED,
@@ -30,6 +31,9 @@ from server.commands.outcome import (
 )
 from server.settings import MM, MS, GaitSection, RigFile, in_words
 from server.signals import coils_stop_first
+
+if TYPE_CHECKING:
+    from server.gait_calibration import Star
 
 app = typer.Typer(no_args_is_help=True, help="Measure a rig.")
 
@@ -69,6 +73,7 @@ def gait(
     plant: Annotated[str | None, typer.Option(help="Simulated robot: slip or noslip.")] = None,
     seed: Annotated[int | None, typer.Option(help="Seed of the simulation.")] = None,
     rig: RigOption = None,
+    yes: YesOption = False,
     as_json: Annotated[bool, typer.Option("--json", help="One JSON object on stdout.")] = False,
 ) -> None:
     """Walk a star and report pivot length, play, heading offset, and what each pivot switch does.
@@ -78,7 +83,10 @@ def gait(
     rig_file = with_simulation(read_rig_file(rig), {"plant": plant, "seed": seed})
     if rig_file.is_simulated:
         rig_file = with_simulation(rig_file, {"start_x_mm": 0.0, "start_y_mm": 0.0})
-    result = _calibrate(rig_file, _gait(sweep, tilt), legs, leg, rate)
+    from server.gait_calibration import Star
+
+    choice = _gait(sweep, tilt), Star(legs, leg * MM, math.radians(rate))
+    result = _calibrate(rig_file, *choice, consent=ask_for_consent(rig_file, yes=yes))
     print(json.dumps(result, allow_nan=False) if as_json else _in_words(result))
 
 
@@ -91,16 +99,16 @@ def _gait(sweep: float, tilt: float) -> Gait:
         raise fail(f"the star cannot be walked:\n{in_words(error)}", USAGE) from error
 
 
-def _calibrate(rig_file: RigFile, gait: Gait, legs: int, leg: float, rate: float) -> dict[str, Any]:
+def _calibrate(rig_file: RigFile, gait: Gait, star: Star, *, consent: bool) -> dict[str, Any]:
     from server.assembly import build_machine
-    from server.gait_calibration import Star, calibrate_gait
+    from server.gait_calibration import calibrate_gait
     from server.run_list import new_id
     from vision.cameras import CameraError
 
     try:
         machine = build_machine(rig_file, realtime=not rig_file.is_simulated)
         with console.status("walking the star"), coils_stop_first(machine.stop_coils):
-            done = calibrate_gait(machine, new_id(), gait, Star(legs, leg * MM, math.radians(rate)))
+            done = calibrate_gait(machine, new_id(), gait, star, consent=consent)
     except (Refused, LinkError, CameraError) as error:
         raise fail(str(error), REFUSED) from error
     except TooLittle as error:

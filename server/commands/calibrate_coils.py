@@ -14,13 +14,13 @@ from control.coils import Axis
 from control.simulation.magnetometer import Magnetometer
 from control.snapshot import Vector
 from server.assembly import Machine, coil_set
+from server.commands.answers import Answers
 from server.commands.bench import (
     CoilOption,
     CurrentOption,
     JsonOption,
     SaveOption,
     SimulateOption,
-    YesOption,
     coils_asked_for,
     explained,
     opened,
@@ -28,6 +28,7 @@ from server.commands.bench import (
     sense_gains,
 )
 from server.commands.calibration_result import saved_or_shown, show
+from server.commands.consent import YesOption
 from server.commands.held_coil import Held, HeldCoil, Instrument, held_each_way
 from server.commands.outcome import USAGE, RigOption, fail, read_rig_file
 from server.settings import MM, RigFile
@@ -102,7 +103,7 @@ def _measured(
         require_simulated(rig_file, "--simulate-readings")
     gains = sense_gains(rig_file)
     with opened(rig_file, realtime=not simulate, yes=yes) as (machine, bench):
-        instrument = _simulated_magnetometer(machine, point) if simulate else _ask_for_field
+        instrument = _simulated_magnetometer(machine, point) if simulate else _magnetometer_by_asking()
         return [
             Reading(axis, sensed, point, axis, field)
             for axis in axes
@@ -110,9 +111,14 @@ def _measured(
         ]
 
 
-def _ask_for_field(held: Held, coil: HeldCoil) -> float:
-    question = f"{held.coil} coils at {coil.sensed:+.2f} A: field along {held.coil}, mT"
-    return MT * typer.prompt(question, type=float, err=True)
+def _magnetometer_by_asking() -> Instrument:
+    answers = Answers()
+
+    def ask(held: Held, coil: HeldCoil) -> float:
+        question = f"{held.coil} coils at {coil.sensed:+.2f} A: field along {held.coil}, mT"
+        return MT * answers.number(question, lambda: coil.is_held)
+
+    return ask
 
 
 def _simulated_magnetometer(machine: Machine, point: Vector) -> Instrument:

@@ -17,8 +17,9 @@ from control.calibration.verdict import Cause, Verdict, diagnose
 from control.model import Pose
 from control.registration import Registration
 from server.assembly import Machine, registration_of
-from server.commands.bench import JsonOption, SaveOption, YesOption, explained, opened
+from server.commands.bench import JsonOption, SaveOption, explained, opened
 from server.commands.calibration_result import saved_or_shown
+from server.commands.consent import YesOption
 from server.commands.outcome import FAILED, RigOption, fail, read_rig_file
 from server.settings import MM, RigFile
 

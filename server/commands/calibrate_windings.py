@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 from statistics import mean
 
-import typer
-
 from control.calibration.bench import Bench
 from control.calibration.windings import (
     AmmeterReading,
@@ -17,13 +15,13 @@ from control.calibration.windings import (
     without_cut_off,
 )
 from server.assembly import Machine, coil_set
+from server.commands.answers import Answers
 from server.commands.bench import (
     CoilOption,
     CurrentOption,
     JsonOption,
     SaveOption,
     SimulateOption,
-    YesOption,
     coils_asked_for,
     explained,
     opened,
@@ -31,6 +29,7 @@ from server.commands.bench import (
     sense_gains,
 )
 from server.commands.calibration_result import saved_or_shown, show
+from server.commands.consent import YesOption
 from server.commands.held_coil import Held, HeldCoil, Instrument, each_way, held_each_way
 from server.commands.outcome import FAILED, USAGE, RigOption, fail, read_rig_file
 from server.settings import RigFile
@@ -101,7 +100,7 @@ def sense(
         require_simulated(rig_file, "--simulate-readings")
     gains = sense_gains(rig_file)
     with opened(rig_file, realtime=not simulate_readings, yes=yes) as (machine, bench):
-        instrument = _simulated_ammeter(machine) if simulate_readings else _ask_for_current
+        instrument = _simulated_ammeter(machine) if simulate_readings else _ammeter_by_asking()
         readings = [
             AmmeterReading(axis, sensed, shown)
             for axis in axes
@@ -117,9 +116,14 @@ def sense(
     show({"sense": changes}, words, saved_or_shown(rig, {"coils": changes}, save), as_json)
 
 
-def _ask_for_current(held: Held, coil: HeldCoil) -> float:
-    question = f"{held.coil} coils at {coil.sensed:+.2f} A by the board: the ammeter shows, A"
-    return typer.prompt(question, type=float, err=True)
+def _ammeter_by_asking() -> Instrument:
+    answers = Answers()
+
+    def ask(held: Held, coil: HeldCoil) -> float:
+        question = f"{held.coil} coils at {coil.sensed:+.2f} A by the board: the ammeter shows, A"
+        return answers.number(question, lambda: coil.is_held)
+
+    return ask
 
 
 def _simulated_ammeter(machine: Machine) -> Instrument:

@@ -7,6 +7,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Self
 
+import typer
+
 from control.calibration.bench import Bench
 from control.calibration.windings import SenseGains, without_cut_off
 from control.coils import AXES, Axis
@@ -56,9 +58,14 @@ class HeldCoil:
             raise
         return self
 
+    @property
+    def is_held(self) -> bool:
+        """Whether the coil still carries its current."""
+        return self._error is None
+
     def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
         self._end()
-        if kind is None:
+        if kind is None or (kind is typer.Abort and not self.is_held):
             self._require_held()
 
     def _end(self) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import time
 from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -60,11 +61,17 @@ class SeparateBoard:
         return self.monitor.take()[-1].milliseconds
 
 
-@pytest.fixture
-def board() -> Iterator[SeparateBoard]:
+@contextmanager
+def separate_board() -> Iterator[SeparateBoard]:
     with started("control.simulation.board_process", "--control-port", "0", "--linger", "20") as (_, line):
         found = re.fullmatch(r"board: serial=(\S+) control=(\S+)", line)
         assert found is not None, line
         monitor = RemoteBoard(found.group(2), realtime=True)
         yield SeparateBoard(monitor, *found.groups())
         monitor.close()
+
+
+@pytest.fixture
+def board() -> Iterator[SeparateBoard]:
+    with separate_board() as board:
+        yield board

@@ -26,7 +26,7 @@ from tests.faults.invariants import Electrics, Trace
 GAIT = Gait(sweep=math.radians(10.0), tilt=math.radians(25.0))
 EIGHT = Selection(Choice("geometric"), Choice("eight"), GAIT)
 AT_HOME = Pose(0.0, -0.042, math.radians(90.0))
-WALKS_FOR = 1.5
+WALKS_FOR = 1.0
 """Before a fault, s: the field is up after 0.3 s."""
 
 
@@ -163,7 +163,7 @@ class FaultBench:
         self.faults.inject(name, parameters)
         return began
 
-    def react(self, name: str, watch: float = 1.5, **parameters: Any) -> Reaction:
+    def react(self, name: str, watch: float = 1.0, **parameters: Any) -> Reaction:
         """Put a fault into a rig that walks, and see what it does for a while."""
         logged = len(self.trace.events)
         fault = self.inject(name, **parameters)

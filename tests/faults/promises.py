@@ -23,6 +23,10 @@ FRAME = 17
 """Milliseconds: a frame at 60 Hz, after which the loop looks again."""
 
 
+AGAINST = DISARMED, "sign"
+"""The robot turns against the field."""
+
+
 @dataclass(frozen=True, slots=True)
 class Promise:
     """after: the state it leads to.  code: of the line in the log; "" for a rig that carries on.
@@ -30,6 +34,7 @@ class Promise:
     noticed, zero: at most so long after the fault, ms of the board; None where the robot walks on.
     parameters: of the trial.  watch: how long the trial looks, s.  asleep: the loop itself stands still, ms.
     overshoot: share by which a current may pass its limit.  tries: of the operator to go on.
+    or_else: another state and code that it may lead to, depending on where the robot is.
     """
 
     name: str
@@ -39,10 +44,25 @@ class Promise:
     noticed: int | None = None
     zero: int | None = None
     parameters: Mapping[str, Any] = field(default_factory=dict)
-    watch: float = 1.5
+    watch: float = 1.0
     asleep: int = 0
     overshoot: float = OVERSHOOT
     tries: int = 1
+    or_else: tuple[RigState, str] | None = None
+
+    @property
+    def outcomes(self) -> tuple[tuple[RigState, str], ...]:
+        """States and codes that are as promised."""
+        usual = self.after, self.code
+        return (usual,) if self.or_else is None else (usual, self.or_else)
+
+    @property
+    def state(self) -> str:
+        return " or ".join(state.value for state, _ in self.outcomes)
+
+    @property
+    def go_on(self) -> str:
+        return " or ".join(GO_ON[state] for state, _ in self.outcomes)
 
     @property
     def kind(self) -> FaultKind:
@@ -54,7 +74,7 @@ _PROMISES = (
     Promise("camera_frozen", "the camera repeats one picture", HELD, "frozen", 3 * FRAME, 4 * FRAME),
     Promise("camera_late", "no frame for 0.10 s, then how old the frames are", HELD, "camera", 104, 105),
     Promise("camera_drops", "a lower rate, nothing else", RUNNING),
-    Promise("camera_mirrored", "the robot is not where it should be", HELD, "lost", 217, 218, tries=2),
+    Promise("camera_mirrored", "the robot is not where it should be, or turns against the field", HELD, "lost", 217, 218, tries=2, or_else=AGAINST),
     Promise("robot_hidden", "the robot is not seen", HELD, "lost", 217, 218),
     Promise("sighting_jumps", "the robot is not where it should be", HELD, "lost", 217, 218),
     Promise("sighting_nan", "the robot is not seen; refused sightings are counted", HELD, "lost", 217, 218),
@@ -79,7 +99,10 @@ _PROMISES = (
     ),
     Promise("sense_wrong", "the board reports: over_current", FAULT, "board", 3 * FRAME, 50),
     Promise("coil_resistance", "which coil shows less current than commanded", DISARMED, "sense", 250, 251),
-    Promise("coil_swapped", "the robot is not where it should be", HELD, "lost", 400, 401),
+    Promise(
+        "coil_swapped", "the robot is not where it should be, or turns against the field", HELD, "lost", 400, 401,
+        or_else=AGAINST,
+    ),
     Promise("loop_stalls", "the loop stood still", HELD, "stall", 400, 151, asleep=400),
     Promise("computer_sleeps", "the computer slept", HELD, "clock", 2000, 151, asleep=2000, watch=3.0),
     Promise("report_nan", "no word from the board; refused reports are counted", DISARMED, "telemetry", 320, 325),

@@ -10,13 +10,15 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from control.snapshot import RigState
-from tests.faults.promises import GO_ON, PROMISES, RESET
+from tests.faults.promises import PROMISES, RESET
 from tests.faults.trial import Trial, try_out
 
 DOCUMENT = Path(__file__).parents[2] / "SAFETY.md"
 BEGIN = "<!-- the table is written by `make safety` -->"
 END = "<!-- end of the table -->"
-HEAD = ("fault", "what you see", "state after", "zero promised, ms", "zero measured, ms", "how to go on")
+HEAD = (
+    "fault", "what you see", "state after", "noticed, ms", "zero promised, ms", "zero measured, ms", "how to go on",
+)  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,15 +70,16 @@ def _row(trial: Trial) -> tuple[str, ...]:
     return (
         promise.kind.title,
         promise.sees,
-        promise.after.value,
+        promise.state,
+        "–" if walks_on else str(reaction.noticed),
         "–" if walks_on else str(promise.zero),
         "–" if walks_on else str(reaction.zero),
-        GO_ON[promise.after],
+        promise.go_on,
     )
 
 
 def _outside_row(event: OutsideEvent) -> tuple[str, ...]:
-    return event.title, event.sees, event.after, event.promised, f"`{event.tests}`", event.go_on
+    return event.title, event.sees, event.after, "–", event.promised, f"`{event.tests}`", event.go_on
 
 
 def main() -> None:

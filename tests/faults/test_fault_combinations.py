@@ -31,7 +31,7 @@ def test_the_gravest_of_two_faults_decides(
     """When two things fail, the graver one decides what you have to do, in whichever order they came."""
     bench.walk()
     bench.inject(first)
-    bench.run_for(0.3)
+    bench.run_for(0.05)
     bench.inject(second)
     bench.run_for(0.7)
     assert bench.snapshot.rig is after, bench.snapshot.reason

@@ -15,8 +15,8 @@ from tests.paper_board import CONFIGURATION
 PERIOD = 1.0 / 60.0
 FULL = 0.95
 ALLOCATION = ((800.0, 0.0, 0.0), (0.0, 800.0, 0.0), (0.0, 0.0, 800.0))
-COMMAND = DriveCommand(1, 0.0, 0.0, math.radians(10.0), 0.0101, ALLOCATION, 0.2)
-"""8 A in coil 2, which a tilt of 10 degrees lets it just reach."""
+COMMAND = DriveCommand(1, 0.0, 0.0, math.radians(10.0), 0.0101, ALLOCATION, 0.15)
+"""8 A in coil 2, which a tilt of 10 degrees lets it just reach; the time to live is the program's own."""
 
 
 def main(port: str) -> None:

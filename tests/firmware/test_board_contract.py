@@ -6,6 +6,7 @@ A test with `any_board` only talks to it; one with `board` also looks at its pin
 from __future__ import annotations
 
 from contextlib import closing
+from itertools import pairwise
 from typing import Any
 
 import pytest
@@ -68,7 +69,7 @@ def test_a_board_reports_a_hundred_times_a_second(any_board: BoardContact) -> No
     any_board.run(500)
     times = [report.time for report in any_board.reports[before:]]
     assert 48 <= len(times) <= 52
-    assert {later - earlier for earlier, later in zip(times, times[1:], strict=False)} == {10}
+    assert {later - earlier for earlier, later in pairwise(times)} == {10}
 
 
 # ---- who may drive

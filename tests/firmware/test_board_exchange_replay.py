@@ -10,11 +10,10 @@ import random
 from collections import Counter
 from collections.abc import Sequence
 
-import pytest
 from board_contact import SteppedContact, Terminal
 
 from control.link import wire
-from control.link.messages import ARM, BoardCode, Drive, Hello, ResetCause, Stop, Telemetry
+from control.link.messages import ARM, BoardCode, Drive, Hello, ResetCause, Stop
 from control.simulation.emulated import EmulatedBoard, prepare
 from control.simulation.emulator_port import Consumed, Duty, Event, Reset, Sent, Tick
 from control.simulation.twin import FirmwareTwin

@@ -65,7 +65,7 @@ class Watched:
         samples = self.samples_for(0.5)
         check_limits(samples, ELECTRICS)
         zero = check_zero(Trace(samples), ELECTRICS, died + ON_ITS_WAY)
-        assert zero - died <= DEAD_MAN + 1
+        assert zero - died <= DEAD_MAN
         check_stays_zero(Trace(samples), zero)
 
     def close(self) -> None:

@@ -6,6 +6,7 @@ import math
 import subprocess
 from collections.abc import Iterator
 from contextlib import closing
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -98,7 +99,7 @@ def test_the_coils_follow_the_compare_registers_by_the_exact_exponential(probe: 
     probe.drive((399, 199, 24))
     samples = probe.step(50)
     assert samples[-1].duty == (400, 200, 25)
-    for before, after in zip(samples, samples[1:], strict=False):
+    for before, after in pairwise(samples):
         for k, coil in enumerate(COILS):
             decay = math.exp(-1e-3 * coil.resistance / coil.inductance)
             settled = after.duty[k] / STEPS[k] * 24.0 / coil.resistance

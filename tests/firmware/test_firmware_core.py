@@ -116,6 +116,18 @@ def test_the_coil_that_is_farthest_beyond_its_limit_scales_all_three(twins: Twin
         assert current == pytest.approx(limit * share / largest, abs=8)
 
 
+@pytest.mark.parametrize("sign", [1, -1])
+def test_the_strongest_field_and_allocation_are_scaled_back_too(twins: Twins, sign: int) -> None:
+    """Each coil is asked for more than 100 A, as far as the numbers go; a share has 14 bits."""
+    twins.say(Hello())
+    twins.say(replace(CONFIGURE, max_field=32767, field_slew=65535))
+    allocation = (sign * 32767,) * 9
+    changes = {"pivot": -1, "field": 32767, "tilt": 6400, "heading_goal": phase(-math.pi / 4)}
+    twins.say(replace(ARMING, start_heading=phase(-math.pi / 4), allocation=allocation, **changes))
+    twins.run(149)
+    assert twins.reports[-1].commanded == pytest.approx((sign * 8000,) * 3, abs=8)
+
+
 def test_a_command_that_is_not_renewed_expires(driving: Twins) -> None:
     driving.say(replace(CALM, time_to_live=1))
     driving.run(1)

@@ -79,14 +79,18 @@ def test_swapped_leads_are_named_by_the_magnetometer(tmp_path):
     assert "the y coils' field has the wrong sign" in said(answer)
 
 
+@pytest.mark.exclusive
 def test_a_person_is_asked_for_each_reading_and_may_type_them(tmp_path):
     rig = rig_at(tmp_path, "[limits]\n")
     per_ampere = coil_set(RigFile()).centre[2][2] * 1e3
-    typed = "\n".join(f"{1.1 * per_ampere * current:.4f}" for current in (1.0, -1.0, -2.0, 2.0))
+    typed = "about two\n" + "\n".join(
+        f"{1.1 * per_ampere * current:.4f}" for current in (1.0, -1.0, -2.0, 2.0)
+    )
     answer = calibrate("coils", "--measure", "--coil", "z", "--rig", rig, "--json", input=typed + "\n")
     assert answer.exit_code == 0, answer.stderr
     assert "field along z, mT" in said(answer)
-    result = json.loads(answer.stdout.splitlines()[-1])  # what is typed is echoed before
+    assert "'about two' is no number" in said(answer)
+    result = json.loads(answer.stdout)
     assert result["pairs"]["z"]["field_gain"] == pytest.approx(1.1, abs=0.015)
 
 
@@ -250,6 +254,7 @@ def on_its_own(held: HeldCoil) -> None:
     assert not held._thread.is_alive()
 
 
+@pytest.mark.exclusive
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_a_signal_at_the_prompt_zeroes_the_coils_and_ends_the_command(tmp_path, number):
     rig = rig_at(tmp_path, "")

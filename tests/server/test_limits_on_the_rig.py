@@ -23,7 +23,9 @@ SWING = math.radians(60.0)
 
 @pytest.fixture
 def bench() -> Iterator[FaultBench]:
-    facing_east = RigFile(vision=VisionSection(heading_hint_deg=0.0)).with_simulation(seed=3, start_heading_deg=0.0)
+    facing_east = RigFile(vision=VisionSection(heading_hint_deg=0.0)).with_simulation(
+        seed=3, start_heading_deg=0.0
+    )
     with fault_bench(facing_east) as ready:
         yield ready
 
@@ -122,7 +124,9 @@ def test_a_run_that_would_lead_out_is_held_and_goes_on_inward(bench: FaultBench)
     assert bench.world.body().pose.x < 0.0620
 
 
-def test_a_robot_beyond_the_hard_margin_is_without_current_and_can_be_driven_back_in(bench: FaultBench) -> None:
+def test_a_robot_beyond_the_hard_margin_is_without_current_and_can_be_driven_back_in(
+    bench: FaultBench,
+) -> None:
     put(bench, 0.0675, 0.0, EAST)
     bench.loop.arm(GAIT)
     bench.run_for(0.5)

@@ -52,9 +52,19 @@ function Vitals({ tick }) {
         <dt>Camera</dt><dd>${quantity(loop?.rate_Hz, "fps", 0)}</dd></div>
       <div title="From frame in to bytes out: median, and 99th percentile">
         <dt>Loop</dt><dd>${quantity(loop?.latency_p50_ms, "ms")} <span class="soft">p99 ${quantity(loop?.latency_p99_ms, "ms")}</span></dd></div>
+      <div title="${coilDetail(tick)}"><dt>Coils</dt><dd>${percent(hottest(tick))}${tick?.limited_by && html` <span class="soft">limited</span>`}</dd></div>
       <div title="${linkDetail(link)}"><dt>Link</dt><dd>${link?.state ?? "–"} <span class="soft">${roundTrip(link)}</span></dd></div>
     </dl>
   `;
+}
+
+const hottest = (tick) => (tick?.coil_heat ? Math.max(...tick.coil_heat) : null);
+const percent = (share) => quantity(typeof share === "number" ? share * 100 : null, "%", 0);
+
+function coilDetail(tick) {
+  const each = (tick?.coil_heat ?? []).map((share, index) => `${"xyz"[index]} ${percent(share)}`).join(", ");
+  const heat = `Estimated heat of the hottest coil, of what it may have (${each}); from 100 % on it must cool to 80 %`;
+  return tick?.limited_by ? `${heat}. The field is held back by: ${tick.limited_by}` : heat;
 }
 
 const roundTrip = (link) => (typeof link?.round_trip_ms === "number" ? quantity(link.round_trip_ms, "ms", 0) : "");

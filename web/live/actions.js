@@ -56,7 +56,13 @@ function hasPlace(key) {
   return name in (schema?.properties ?? {});
 }
 
-export const arm = () => act("arm", () => post("/arm"));
+/** A simulated rig is armed at once; a real one asks first. */
+export const arm = () => (get().tick?.simulated ? act("arm", () => post("/arm")) : set({ consentAsked: true }));
+
+export const armWithConsent = () => {
+  set({ consentAsked: false });
+  return act("arm", () => post("/arm", { consent: true }));
+};
 export const disarm = () => act("disarm", () => post("/disarm"));
 export const reset = () => act("reset", () => post("/reset"));
 export const pauseRun = () => act("pause", () => post("/runs/current/pause"));

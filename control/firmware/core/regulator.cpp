@@ -41,7 +41,7 @@ void Regulator::rest() {
 
 int16_t Regulator::sensed(uint16_t counts) const {
     const uint32_t magnitude = (static_cast<uint32_t>(counts) * gains_[flows_backwards()]) >> 8;
-    const int16_t shown = magnitude < static_cast<uint32_t>(most_sensed) ? static_cast<int16_t>(magnitude) : most_sensed;
+    const int16_t shown = magnitude < uint32_t(most_sensed) ? static_cast<int16_t>(magnitude) : most_sensed;
     return flows_backwards() ? static_cast<int16_t>(-shown) : shown;
 }
 
