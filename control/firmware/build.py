@@ -53,7 +53,7 @@ class Build:
 
 def core_sources() -> list[Path]:
     """The portable part: everything but registers."""
-    return sorted((SOURCES / "core").glob("*.cpp"))
+    return sorted((SOURCES / "portable").glob("*.cpp"))
 
 
 def build(folder: Path) -> Build:

@@ -2,7 +2,7 @@
 
     python -m control.firmware.contract
 
-writes `core/contract.h`: codes and layouts of the messages, limits, fixed-point formats, the sine table.
+writes `portable/contract.h`: codes and layouts of the messages, limits, fixed-point formats, the sine table.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from pathlib import Path
 from control.link import messages, wire
 from control.simulation import coil_drive, fixed_point, regulator, twin
 
-HEADER = Path(__file__).parent / "core" / "contract.h"
+HEADER = Path(__file__).parent / "portable" / "contract.h"
 
 _TYPES = {"B": "uint8_t", "b": "int8_t", "H": "uint16_t", "h": "int16_t", "I": "uint32_t", "i": "int32_t"}
 _WORDS_A_LINE = 12

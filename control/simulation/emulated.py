@@ -34,7 +34,7 @@ PATIENCE = 5.0
 """A child that has not ended so long after its standard input was closed is killed, s."""
 
 _GREETING = re.compile(r"board: serial=(\S+) control=(tcp://127\.0\.0\.1:\d+)\n")
-_SOURCES = ("core/*.cpp", "core/*.h", "avr/*.cpp", "avr/*.h", "*.py")
+_SOURCES = ("portable/*.cpp", "portable/*.h", "avr/*.cpp", "avr/*.h", "*.py")
 
 
 class EmulationFailed(OSError):

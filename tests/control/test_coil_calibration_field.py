@@ -6,11 +6,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from control.calibration.field_gain import BadReadings, Reading, fit_field
 from control.coils import AXES, PAPER_PAIRS, field_per_ampere
+
+patient = settings(deadline=None)
+"""What an example takes on a busy computer is no matter here."""
 
 ROOM = (18e-6, 4e-6, -44e-6)
 CURRENTS = (2.0, -2.0, 1.0, -1.0)
@@ -32,6 +35,7 @@ def along_own_axis(gains, noise=0.0, seed=1, coils=AXES):
     ]
 
 
+@patient
 @given(gains_)
 def test_readings_without_noise_give_the_gains_and_the_rooms_own_field(gains):
     found = fit_field(PAPER_PAIRS, along_own_axis(gains))
@@ -40,6 +44,7 @@ def test_readings_without_noise_give_the_gains_and_the_rooms_own_field(gains):
     assert found.worst_residual < 1e-9
 
 
+@patient
 @given(gains_)
 def test_a_gain_that_the_rig_file_has_already_makes_no_difference(gains):
     before = [replace(pair, gain=1.3) for pair in PAPER_PAIRS]

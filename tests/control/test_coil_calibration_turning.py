@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from control.calibration.heading_offset import corrected, heading_offset
@@ -13,6 +13,9 @@ from control.calibration.verdict import Cause, diagnose
 from control.coils import AXES, command_field
 from control.model import PIVOT_A, PIVOT_B, Pose, opposite, pivot_point, wrap
 from control.registration import Registration
+
+patient = settings(deadline=None)
+"""What an example takes on a busy computer is no matter here."""
 
 LENGTH = 0.010
 headings = st.floats(-math.pi, math.pi)
@@ -81,12 +84,14 @@ def evidence(heading, **faults) -> Evidence:
     return gather(before, probe(robot, before.heading), LENGTH)
 
 
+@patient
 @given(headings)
 def test_a_rig_in_order_shows_nothing(heading):
     assert diagnose(evidence(heading)).causes == (Cause.NONE,)
     assert diagnose(evidence(heading, play=math.radians(3.0))).causes == (Cause.NONE,)
 
 
+@patient
 @given(headings, st.floats(-0.4, 0.4))
 @pytest.mark.parametrize(
     ("wiring", "cause"),
@@ -103,12 +108,14 @@ def test_each_fault_of_the_wiring_is_named_even_by_a_camera_that_is_turned(wirin
     assert not diagnose(found, picture_is_mirrored=False).is_usable
 
 
+@patient
 @given(headings)
 @pytest.mark.parametrize("wiring", [("-x", "y", "z"), ("x", "-y", "z"), ("y", "x", "z")])
 def test_without_a_look_at_the_picture_a_mirror_is_named_as_well(wiring, heading):
     assert Cause.MIRRORED in diagnose(evidence(heading, wiring=wiring)).causes
 
 
+@patient
 @given(headings)
 def test_a_mirrored_picture_is_named_once_somebody_has_looked(heading):
     found = evidence(heading, mirrored=True)
@@ -117,6 +124,7 @@ def test_a_mirrored_picture_is_named_once_somebody_has_looked(heading):
     assert Cause.MIRRORED in diagnose(found).causes
 
 
+@patient
 @given(headings, st.floats(-0.6, 0.6))
 def test_a_reversed_magnet_is_told_from_half_a_turn_of_the_camera(heading, turned):
     reversed_ = evidence(heading, magnet_reversed=True, turned=turned)
@@ -127,6 +135,7 @@ def test_a_reversed_magnet_is_told_from_half_a_turn_of_the_camera(heading, turne
     assert diagnose(half_turn).is_usable
 
 
+@patient
 @given(headings, st.floats(-math.pi, math.pi).filter(lambda angle: abs(angle) > 0.06))
 def test_a_turned_camera_shows_its_angle(heading, turned):
     found = evidence(heading, turned=turned)
@@ -188,6 +197,7 @@ def circle(turned=0.0, play=0.0, noise=lambda _: 0.0, count=12):
     return stations
 
 
+@patient
 @given(headings, st.floats(0.0, 0.12))
 def test_the_rotation_comes_out_whatever_the_play(turned, play):
     found = heading_offset(circle(turned, play))
@@ -209,6 +219,7 @@ def test_headings_that_scatter_are_refused():
         heading_offset(circle(noise=lambda number: 0.2 * (-1) ** number))
 
 
+@patient
 @given(headings, st.floats(-1.5, 1.5), st.booleans(), st.booleans())
 def test_after_the_correction_field_and_robot_agree(start, turned, was_reversed, is_reversed):
     """Under the corrected registration the rotation is the true one, and so is the polarity."""

@@ -5,13 +5,16 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from control.coils import PAPER_PAIRS, CoilSet, command_field, currents_for, field_per_ampere
 from control.model import PIVOT_A, Pose, wrap
 from control.registration import Registration
 from control.simulation.plant import build_plant
+
+patient = settings(deadline=None)
+"""What an example takes on a busy computer is no matter here."""
 
 PLAIN = CoilSet()
 MOVED = Registration(x=0.007, y=-0.004, rotation=math.radians(17.0))
@@ -40,6 +43,7 @@ def test_a_gain_of_one_leaves_every_figure_as_it_was_to_the_last_digit():
     assert same.local_allocation(0.0123, -0.0456) == PLAIN.local_allocation(0.0123, -0.0456)
 
 
+@patient
 @given(st.floats(0.2, 5.0), st.floats(0.2, 5.0), st.floats(0.2, 5.0))
 def test_a_gain_scales_its_own_pair_and_no_other(x, y, z):
     pairs = [replace(pair, gain=gain) for pair, gain in zip(PAPER_PAIRS, (x, y, z), strict=True)]
@@ -48,6 +52,7 @@ def test_a_gain_scales_its_own_pair_and_no_other(x, y, z):
     assert np.allclose(scaled, PLAIN.field_per_ampere(points) * np.array([x, y, z]), rtol=1e-12, atol=0.0)
 
 
+@patient
 @given(on_the_plate, on_the_plate, st.tuples(amperes, amperes, amperes))
 def test_the_field_turns_and_moves_with_the_coils(x, y, currents):
     """K(p) = R K_coils(R^T (p - o))."""
@@ -57,12 +62,14 @@ def test_the_field_turns_and_moves_with_the_coils(x, y, currents):
     assert COILS.local_field(x, y, currents) == pytest.approx(expected, abs=2e-5 * 8.0e-2)
 
 
+@patient
 @given(on_the_plate, on_the_plate, on_the_plate)
 def test_a_point_comes_back_from_the_coils_frame(x, y, z):
     points = np.array([(x, y, z), (0.01, 0.02, 0.03)])
     assert MOVED.to_workspace(MOVED.to_coils(points)) == pytest.approx(points, abs=1e-15)
 
 
+@patient
 @given(on_the_plate, on_the_plate, angles)
 def test_the_local_allocation_makes_the_very_field_that_is_asked_in_the_workspace(x, y, heading):
     wanted = command_field(PIVOT_A, heading, 0.4, 0.01)
@@ -70,6 +77,7 @@ def test_the_local_allocation_makes_the_very_field_that_is_asked_in_the_workspac
     assert made == pytest.approx(wanted, rel=1e-12, abs=1e-17)
 
 
+@patient
 @given(on_the_plate, on_the_plate, angles)
 def test_a_reversed_magnet_gets_every_field_the_other_way_round(x, y, heading):
     coils = CoilSet(registration=Registration(magnet_reversed=True))

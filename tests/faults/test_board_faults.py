@@ -44,7 +44,7 @@ def test_an_over_current_latches() -> None:
 
 
 def test_a_coil_of_another_resistance_disarms() -> None:
-    """When a coil carries another current than commanded, the rig disarms and names it."""
+    """When a coil cannot carry what is commanded, the rig stops as soon as that is asked of it, and names the coil."""
     keeps_its_promise("coil_resistance")
 
 

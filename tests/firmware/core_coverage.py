@@ -40,7 +40,7 @@ def measured(folder: Path) -> Coverage:
     _run([*command, *(str(HERE / name) for name in TESTS)], environment)
     report = folder / "coverage.json"
     gcovr = [sys.executable, "-m", "gcovr", "--root", str(ROOT), "--object-directory", str(folder)]
-    _run([*gcovr, "--filter", "control/firmware/core/", "--json", str(report), str(folder)], environment)
+    _run([*gcovr, "--filter", "control/firmware/portable/", "--json", str(report), str(folder)], environment)
     return _read(json.loads(report.read_text(encoding="utf-8")))
 
 

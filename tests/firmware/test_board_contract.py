@@ -5,7 +5,6 @@ A test with `any_board` only talks to it; one with `board` also looks at its pin
 
 from __future__ import annotations
 
-from contextlib import closing
 from itertools import pairwise
 from typing import Any
 
@@ -13,8 +12,7 @@ import pytest
 from board_contact import BoardContact, SteppedContact
 
 from control.link import wire
-from control.link.messages import ARM, BoardCode, Flag, Hello, Refusal, ResetCause, Stop
-from control.simulation.lockstep import RemoteBoard
+from control.link.messages import ARM, BoardCode, Hello, Refusal, Stop
 from control.simulation.twin import FIRMWARE_VERSION
 from tests.simulation.board_bench import CONFIGURE
 
@@ -245,124 +243,3 @@ def test_a_drive_with_a_flipped_bit_is_not_obeyed(any_board: BoardContact, bit: 
     any_board.run(10)
     assert any_board.state is BoardCode.READY
     assert any_board.report.bad >= 1
-
-
-# ---- its electrics
-
-
-def test_a_driver_fault_zeroes_every_bridge_and_stays_until_a_greeting(board: SteppedContact) -> None:
-    for coil in (1, 2, 3):
-        board.driving(start=0.5, milliseconds=200)
-        failed_at = board.now
-        board.board.set_condition("driver_fault", 1, coil)
-        board.run(30)
-        assert board.last_driven <= failed_at + 2
-        assert board.state is BoardCode.FAULT
-        assert board.report.flags & Flag.DRIVER_FAULT
-        board.board.set_condition("driver_fault", 0, coil)
-        board.say(board.command(flags=ARM))
-        assert board.state is BoardCode.FAULT
-        board.say(Hello())
-        assert board.state is BoardCode.BOOTED
-
-
-def test_too_much_current_trips_within_four_milliseconds(board: SteppedContact) -> None:
-    board.driving(start=0.5)
-    failed_at = board.now
-    board.board.set_condition("sense_permille", 10_000, 2)
-    board.run(30)
-    assert board.last_driven <= failed_at + 4
-    assert board.state is BoardCode.FAULT
-    assert board.report.flags & Flag.OVER_CURRENT
-
-
-def test_a_weak_supply_is_reported_and_a_strong_one_is_not(board: SteppedContact) -> None:
-    board.driving()
-    assert not board.report.flags & Flag.SUPPLY_LOW
-    assert board.report.supply == pytest.approx(24000, abs=60)
-    board.board.set_condition("supply_mV", 15000)
-    board.say(board.command())
-    assert board.report.flags & Flag.SUPPLY_LOW
-    assert board.report.supply == pytest.approx(15000, abs=60)
-
-
-def test_the_current_follows_the_command_on_all_three_coils(board: SteppedContact) -> None:
-    """The field at 0.5 rad and 25 degrees of tilt, 0.8 A a mT: what the twin's own tests hold for 10 mT."""
-    board.driving(start=0.5)
-    told = board.report.commanded
-    for true, commanded in zip(board.samples[-1].currents, told, strict=True):
-        assert abs(commanded) > 2000
-        assert true == pytest.approx(commanded * 1e-3, abs=0.08)
-
-
-def test_after_a_stop_the_current_dies_with_the_coils_own_time_constant(board: SteppedContact) -> None:
-    board.driving(start=0.5)
-    board.stop()
-    board.run(160)
-    assert max(abs(current) for current in board.samples[-1].currents) < 0.05 * 8.0
-
-
-def test_a_reset_leaves_zero_and_a_board_that_has_to_be_told_everything(board: SteppedContact) -> None:
-    board.driving()
-    boot_id = board.boot_id
-    board.board.reset()
-    reset_at = board.now
-    board.say(board.command(), boot_id=boot_id)
-    board.run(60)
-    assert board.last_driven <= reset_at
-    assert board.banners[-1].reset_cause == ResetCause.EXTERNAL
-    assert board.banners[-1].configuration_hash == 0
-    assert board.boot_id == boot_id + 1
-    board.say(Hello())
-    assert board.state is BoardCode.BOOTED
-
-
-# ---- its control port
-
-
-def test_the_control_port_tells_the_same_of_every_simulated_board(board: SteppedContact) -> None:
-    keys = {"time_ms", "mode", "state", "firmware", "boot_id", "duty", "drive_is_zero", "currents_mA"}
-    board.driving(milliseconds=100)
-    told = board.board.state()
-    assert set(told) == keys
-    assert [told["mode"], told["state"], told["boot_id"]] == ["step", "driving", board.boot_id]
-    assert told["time_ms"] == board.now
-    assert told["duty"] == list(board.duty)
-
-
-NONSENSE = (
-    *(
-        "step 0",
-        "step -1",
-        "step 1001",
-        "step x",
-        "step",
-        "",
-        "fly",
-        "step 1 2",
-        "run on",
-        "reset now",
-        "set",
-    ),
-    *("set supply_mV", "set supply_mV x", "set supply_mV 65001", "set supply_mV 1 24000", "set supply_mV -1"),
-    *("set driver_fault 1", "set driver_fault 0 1", "set driver_fault 4 1", "set driver_fault 1 2"),
-    *("set fire 1", "set open_coil 1 1 1", "set supply_mV 9999999999", "\x7f" * 200, "step 1\tx"),
-)
-
-
-def test_nonsense_on_the_control_port_is_an_error_and_changes_nothing(board: SteppedContact) -> None:
-    before = board.board.state()
-    for request in NONSENSE:
-        with pytest.raises(ConnectionError, match="error:"):
-            board.board.ask(request)
-    assert board.board.state() == before
-
-
-def test_two_clients_have_each_their_own_samples(board: SteppedContact) -> None:
-    with closing(RemoteBoard(board.board.url, realtime=False)) as monitor:
-        monitor.state()
-        board.run(40)
-        assert [s.milliseconds for s in monitor.take()] == [s.milliseconds for s in board.samples[-40:]]
-        board.run(2400)
-        late = monitor.take()
-        assert [late[0].milliseconds, late[-1].milliseconds] == [board.now - 1999, board.now]

@@ -121,8 +121,8 @@ def replayed(events: Sequence[Event], boot_id: int) -> Counter[str]:
 
 
 def test_an_exchange_with_the_compiled_firmware_is_the_twins_byte_for_byte(full: bool) -> None:
-    for seed in range(20 if full else 2):
-        compared, contact = recorded(seed, 2000 if full else 700)
+    for seed in range(10 if full else 2):
+        compared, contact = recorded(seed, 1500 if full else 700)
         assert compared["bytes"] > 20_000
         assert compared["driven"] > 2_000
         assert compared["resets"] >= 1

@@ -25,9 +25,10 @@ def walked(board: str, seed: int, duration: float | None) -> Metrics:
     return run_headless(machine, f"eight-{board}", RunRequest(WALK, duration=duration)).ended.metrics
 
 
+@pytest.mark.timeout(900)
 def test_the_compiled_firmware_walks_the_eight_as_well_as_its_twin(full: bool) -> None:
     duration = None if full else PART
-    for seed in (1, 2, 3) if full else (3,):
+    for seed in (1, 3) if full else (3,):
         twin, emulated = walked("twin", seed, duration), walked("emulated", seed, duration)
         assert emulated.mean_error == pytest.approx(twin.mean_error, rel=0.2)
         assert emulated.travelled == pytest.approx(twin.travelled, rel=0.2)

@@ -1,4 +1,4 @@
-"""Mutants of the firmware's core: each compiled, and put before the tests that compare it with the twin."""
+"""Mutants of the firmware's portable part: each compiled, and put before the tests that compare it with the twin."""
 
 from __future__ import annotations
 
@@ -16,12 +16,13 @@ from control.firmware.build import SOURCES
 from tests.mutation.firmware_rules import changed_lines
 
 ROOT = Path(__file__).parents[2]
-HOST = ROOT / "tests" / "firmware" / "host"
-TESTS = ("tests/firmware/test_firmware_core.py", "tests/firmware/test_firmware_core_parts.py")
+PORTABLE = SOURCES / "portable"
+ABI = ROOT / "tests" / "firmware" / "host" / "core_abi.cpp"
+TESTS = tuple(f"tests/firmware/test_firmware_core{part}.py" for part in ("", "_parts", "_exchanges"))
 LONGEST_TEST = 60.0
-"""A mutant that has not failed by then, s, runs in circles, which the tests notice by their time limit: killed."""
+"""A mutant that has not failed by then, s, runs in circles; the tests' own time limit would notice: killed."""
 
-COMPILER = ("g++", "-std=c++17", "-O1", "-fPIC", "-shared", "-w")
+COMPILER = ("g++", "-std=c++17", "-fno-exceptions", "-O1", "-fPIC", "-w")
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,8 +48,7 @@ class Outcome:
 
 
 def all_mutants() -> Iterator[Mutant]:
-    core = SOURCES / "core"
-    for path in sorted((*core.glob("*.cpp"), *core.glob("*.h"))):
+    for path in sorted((*PORTABLE.glob("*.cpp"), *PORTABLE.glob("*.h"))):
         if path.name in ("contract.h", "flash.h"):
             continue  # generated and compared with its source; the AVR's way of reading flash
         for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), start=1):
@@ -57,52 +57,74 @@ def all_mutants() -> Iterator[Mutant]:
 
 
 def judge(wanted: list[Mutant], workers: int) -> Iterator[Outcome]:
-    with tempfile.TemporaryDirectory() as scratch:
-        original = _compile(SOURCES / "core", Path(scratch) / "original.so")
-        if original is None or not _passes(original):
-            raise SystemExit("the unchanged core does not pass its own tests; mend that first")
-        code = original.read_bytes()
+    """The fate of each, in their order."""
+    with tempfile.TemporaryDirectory() as name:
+        bench = _Bench(Path(name))
         with ThreadPoolExecutor(workers) as pool:
-            yield from pool.map(lambda mutant: Outcome(mutant, _fate(mutant, code)), wanted)
+            yield from pool.map(bench.judge, wanted)
 
 
-def _fate(mutant: Mutant, original: bytes) -> str:
-    with tempfile.TemporaryDirectory() as scratch:
-        core = Path(scratch) / "core"
-        shutil.copytree(SOURCES / "core", core)
-        changed = core / Path(mutant.file).name
+class _Bench:
+    """Objects of the unchanged sources; a mutant compiles anew only what its change can reach."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        shutil.copytree(PORTABLE, folder / "portable")
+        abi = ABI.read_text(encoding="utf-8").replace("../../../control/firmware/portable", "portable")
+        (folder / "abi.cpp").write_text(abi, encoding="utf-8")
+        self._sources = [*sorted((folder / "portable").glob("*.cpp")), folder / "abi.cpp"]
+        self._objects = {source.stem: _compiled(source, folder) for source in self._sources}
+        library = folder / "unchanged.so"
+        _link([*self._objects.values()], library)
+        if None in self._objects.values() or not _passes(library):
+            raise SystemExit("the unchanged core does not pass its own tests; mend that first")
+
+    def judge(self, mutant: Mutant) -> Outcome:
+        with tempfile.TemporaryDirectory(dir=self._folder) as name:
+            return Outcome(mutant, self._fate(mutant, Path(name)))
+
+    def _fate(self, mutant: Mutant, scratch: Path) -> str:
+        shutil.copytree(self._folder / "portable", scratch / "portable")
+        shutil.copy(self._folder / "abi.cpp", scratch)
+        changed = scratch / "portable" / Path(mutant.file).name
         lines = changed.read_text(encoding="utf-8").splitlines()
         lines[mutant.line - 1] = mutant.after
         changed.write_text("\n".join(lines) + "\n", encoding="utf-8")
-        library = _compile(core, Path(scratch) / "original.so")
-        if library is None or library.read_bytes() == original:
+        return self._fate_of(self._recompiled(changed, scratch), scratch / "mutant.so")
+
+    def _fate_of(self, objects: dict[str, Path | None], library: Path) -> str:
+        if None in objects.values() or all(_same(objects[stem], self._objects[stem]) for stem in objects):
             return "invalid"
+        _link([*(self._objects | objects).values()], library)
         return "survived" if _passes(library) else "killed"
 
+    def _recompiled(self, changed: Path, scratch: Path) -> dict[str, Path | None]:
+        if changed.suffix == ".cpp":
+            return {changed.stem: _compiled(changed, scratch)}
+        sources = [*(scratch / "portable").glob("*.cpp"), scratch / "abi.cpp"]
+        return {source.stem: _compiled(source, scratch) for source in sources}
 
-def _compile(core: Path, library: Path) -> Path | None:
-    """In a folder of its own, with the paths kept out of the result, so that equal code is equal bytes."""
-    abi = (
-        (HOST / "core_abi.cpp").read_text(encoding="utf-8").replace("../../../control/firmware/core", "core")
-    )
-    root = library.parent
-    if core.parent != root:
-        shutil.copytree(core, root / "core")
-    (root / "core_abi.cpp").write_text(abi, encoding="utf-8")
-    sources = sorted(str(path.relative_to(root)) for path in (root / "core").glob("*.cpp"))
-    command = [*COMPILER, "-I.", "-Icore", *sources, "core_abi.cpp", "-o", library.name]
+
+def _compiled(source: Path, root: Path) -> Path | None:
+    """Named relative to `root`, so that equal code is equal bytes; None when it does not compile."""
+    made = root / f"{source.stem}.o"
+    command = [*COMPILER, "-I.", "-Iportable", "-c", str(source.relative_to(root)), "-o", made.name]
     done = subprocess.run(command, cwd=root, capture_output=True, check=False)
-    return library if done.returncode == 0 else None
+    return made if done.returncode == 0 else None
+
+
+def _same(one: Path | None, other: Path | None) -> bool:
+    return one is not None and other is not None and one.read_bytes() == other.read_bytes()
+
+
+def _link(objects: list[Path | None], library: Path) -> None:
+    made = [str(path) for path in objects if path is not None]
+    subprocess.run(["g++", "-shared", *made, "-o", str(library)], check=True)
 
 
 def _passes(library: Path) -> bool:
-    environment = {
-        **os.environ,
-        "PIVOTRIG_CORE_LIBRARY": str(library),
-        "PYTHONDONTWRITEBYTECODE": "1",
-        "CI": "true",
-    }
-    command = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", *TESTS]
+    environment = {**os.environ, "PIVOTRIG_CORE_LIBRARY": str(library), "CI": "true"}
+    command = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", "-p", "no:xdist", *TESTS]
     try:
         done = subprocess.run(
             command, cwd=ROOT, env=environment, capture_output=True, check=False, timeout=LONGEST_TEST

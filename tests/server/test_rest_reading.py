@@ -10,8 +10,8 @@ pytestmark = pytest.mark.anyio
 STATE = {
     "rig", "reason", "faults", "simulated", "tick", "time_s", "captured_s", "pose", "pose_sigma",
     "measurement", "window_px", "tracking", "tracking_age_s", "command", "reference", "error_mm",
-    "currents_A", "measured_currents_A", "field_mT", "saturated", "body_tilt_deg", "run", "loop", "link",
-    "operator",
+    "currents_A", "measured_currents_A", "field_mT", "saturated", "limited_by", "coil_heat", "refused",
+    "body_tilt_deg", "run", "loop", "link", "operator",
 }  # fmt: skip
 
 

@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-#include "../core/coil_drive.h"
+#include "../portable/coil_drive.h"
 
 namespace pivotrig {
 namespace bridges {

@@ -6,7 +6,7 @@
 #include <avr/interrupt.h>
 #include <avr/wdt.h>
 
-#include "../core/board.h"
+#include "../portable/board.h"
 #include "bridges.h"
 #include "registers.h"
 #include "sensing.h"

@@ -2,7 +2,7 @@
 #ifndef PIVOTRIG_SENSING_H
 #define PIVOTRIG_SENSING_H
 
-#include "../core/coil_drive.h"
+#include "../portable/coil_drive.h"
 
 namespace pivotrig {
 namespace sensing {

@@ -2,7 +2,7 @@
 #ifndef PIVOTRIG_SERIAL_H
 #define PIVOTRIG_SERIAL_H
 
-#include "../core/frame.h"
+#include "../portable/frame.h"
 
 namespace pivotrig {
 namespace serial {

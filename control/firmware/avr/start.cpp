@@ -4,8 +4,8 @@
 #include <avr/pgmspace.h>
 #include <avr/wdt.h>
 
-#include "../core/boot_count.h"
-#include "../core/reset_cause.h"
+#include "../portable/boot_count.h"
+#include "../portable/reset_cause.h"
 #include "registers.h"
 
 namespace {

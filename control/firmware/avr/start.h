@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-#include "../core/contract.h"
+#include "../portable/contract.h"
 
 namespace pivotrig {
 namespace start {

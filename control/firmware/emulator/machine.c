@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "machine.h"
 
+#include "marks.h"
 #include "pins.h"
 
 #include <simavr/avr_adc.h>
 #include <simavr/avr_extint.h>
 #include <simavr/sim_elf.h>
-#include <simavr/sim_interrupts.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,7 +14,6 @@
 enum {
 	FREQUENCY = 16000000,
 	SUPPLY_MV = 5000,
-	TIMER_0_COMPARE = 14, // the 1 kHz interrupt
 	SUPPLY_CHANNEL = 5,
 	POWER_ON = 1, EXTERNAL = 2, // reset causes in MCUSR
 };
@@ -23,14 +22,14 @@ static machine_t *the_machine; // simavr hands no pointer to a reset
 
 // ---- time and the coils
 
-static uint64_t now(const machine_t *machine)
+uint64_t machine_now(const machine_t *machine)
 {
 	return machine->base + machine->avr->cycle;
 }
 
 static void settle(machine_t *machine)
 {
-	uint64_t time = now(machine);
+	uint64_t time = machine_now(machine);
 	coils_run(&machine->coils, (double)(time - machine->settled_at) / FREQUENCY);
 	machine->settled_at = time;
 }
@@ -66,103 +65,6 @@ static void on_conversion(avr_irq_t *irq, uint32_t value, void *param)
 	for (int k = 0; k < COILS; k++)
 		avr_raise_irq(input + k, millivolt(coil_sense_count(&machine->coils.coil[k])));
 	avr_raise_irq(input + SUPPLY_CHANNEL, millivolt(coils_supply_count(&machine->coils)));
-}
-
-// ---- the firmware's marks
-
-static void start(stopwatch_t *watch, uint64_t time)
-{
-	watch->begin = time;
-	watch->is_running = true;
-}
-
-static void stop(stopwatch_t *watch, uint64_t time)
-{
-	uint64_t took = time - watch->begin;
-	if (!watch->is_running)
-		return;
-	watch->is_running = false;
-	watch->count++;
-	watch->sum += took;
-	watch->worst = took > watch->worst ? took : watch->worst;
-}
-
-static int16_t word(const machine_t *machine, uint16_t address)
-{
-	return (int16_t)(machine->avr->data[address] | machine->avr->data[address + 1] << 8);
-}
-
-static void trace_inputs(machine_t *machine)
-{
-	event_t event = {.kind = TRACE_TICK};
-	if (machine->sensed_at == 0)
-		return;
-	for (uint16_t k = 0; k < 4; k++)
-		event.value[k] = word(machine, (uint16_t)(machine->sensed_at + 2 * k));
-	event.value[4] = machine->avr->data[machine->sensed_at + 8];
-	trace_add(&machine->trace, event);
-}
-
-static void trace_outputs(machine_t *machine)
-{
-	event_t event = {.kind = TRACE_DUTY};
-	for (int k = 0; k < COILS; k++)
-		event.value[k] = (int16_t)pins_duty(machine->avr, k);
-	trace_add(&machine->trace, event);
-}
-
-static void on_tick_mark(avr_t *avr, avr_io_addr_t address, uint8_t value, void *param)
-{
-	machine_t *machine = param;
-	avr->data[address] = value;
-	if (value != 0) {
-		start(&machine->tick, now(machine));
-		trace_inputs(machine);
-	} else if (machine->tick.is_running) {
-		stop(&machine->tick, now(machine));
-		trace_outputs(machine);
-	}
-}
-
-static void on_byte_mark(avr_t *avr, avr_io_addr_t address, uint8_t value, void *param)
-{
-	machine_t *machine = param;
-	avr->data[address] = value;
-	trace_byte(&machine->trace, TRACE_CONSUMED, value);
-}
-
-static void on_interrupt(avr_irq_t *irq, uint32_t value, void *param)
-{
-	machine_t *machine = param;
-	(void)irq;
-	if (value != 0)
-		start(&machine->interrupt, now(machine));
-	else
-		stop(&machine->interrupt, now(machine));
-}
-
-// simavr forgets an interrupt that falls due while it is masked; the processor serves it when the mask is lifted.
-static void on_timer_mask(avr_t *avr, avr_io_addr_t address, uint8_t value, void *param)
-{
-	(void)param;
-	avr->data[address] = value;
-	for (int k = 0; k < avr->interrupts.vector_count; k++) {
-		avr_int_vector_t *vector = avr->interrupts.vector[k];
-		if (vector->enable.reg == address && avr_regbit_get(avr, vector->enable) && avr_regbit_get(avr, vector->raised))
-			avr_raise_interrupt(avr, vector);
-	}
-}
-
-unsigned machine_boot_id(const machine_t *machine)
-{
-	return machine->shown_at == 0 ? 0 : (uint16_t)word(machine, machine->shown_at);
-}
-
-const char *machine_state(const machine_t *machine)
-{
-	static const char *const NAMES[REPORTED_STATES] = {"booted", "ready", "driving", "expired", "stopped", "fault"};
-	unsigned code = machine->shown_at == 0 ? REPORTED_STATES : machine->avr->data[machine->shown_at + 2];
-	return code < REPORTED_STATES ? NAMES[code] : "unknown";
 }
 
 // ---- running
@@ -217,9 +119,9 @@ const sample_t *machine_sample(const machine_t *machine, uint64_t ms)
 
 static void run_until(machine_t *machine, uint64_t end)
 {
-	avr_cycle_timer_register(machine->avr, end - now(machine), end_of_stretch, machine);
-	while (!machine->was_reset && now(machine) < end && !machine->has_crashed) {
-		uint64_t before = now(machine);
+	avr_cycle_timer_register(machine->avr, end - machine_now(machine), end_of_stretch, machine);
+	while (!machine->was_reset && machine_now(machine) < end && !machine->has_crashed) {
+		uint64_t before = machine_now(machine);
 		int state = avr_run(machine->avr);
 		machine->has_crashed = state == cpu_Done || state == cpu_Crashed;
 		if (machine->was_reset)
@@ -230,7 +132,7 @@ static void run_until(machine_t *machine, uint64_t end)
 void machine_run(machine_t *machine)
 {
 	uint64_t end = (machine->ms + 1) * CYCLES_PER_MS;
-	while (now(machine) < end && !machine->has_crashed)
+	while (machine_now(machine) < end && !machine->has_crashed)
 		run_until(machine, end);
 	settle(machine);
 	take_sample(machine);
@@ -238,7 +140,7 @@ void machine_run(machine_t *machine)
 
 static void reset(machine_t *machine, uint8_t cause)
 {
-	uint64_t time = now(machine);
+	uint64_t time = machine_now(machine);
 	avr_reset(machine->avr);
 	recover_from_reset(machine, time);
 	machine->avr->data[MCUSR_] = cause;
@@ -270,11 +172,9 @@ static void connect(machine_t *machine)
 {
 	avr_t *avr = machine->avr;
 	avr_irq_register_notify(avr_io_getirq(avr, AVR_IOCTL_ADC_GETIRQ, ADC_IRQ_OUT_TRIGGER), on_conversion, machine);
-	avr_irq_register_notify(avr_get_interrupt_irq(avr, TIMER_0_COMPARE) + AVR_INT_IRQ_RUNNING, on_interrupt, machine);
 	for (const uint16_t *address = PIN_REGISTERS; *address != 0; address++)
 		avr_irq_register_notify(avr_iomem_getirq(avr, *address, NULL, AVR_IOMEM_IRQ_ALL), on_pin_register, machine);
-	avr_register_io_write(avr, GPIOR_0, on_tick_mark, machine);
-	avr_register_io_write(avr, GPIOR_1, on_byte_mark, machine);
+	marks_connect(machine);
 	avr_register_io_write(avr, TIMSK_0, on_timer_mask, machine);
 }
 

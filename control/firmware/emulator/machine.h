@@ -60,8 +60,7 @@ void machine_reset(machine_t *machine);
 // To be called when a condition of the coils has been changed.
 void machine_rewire(machine_t *machine);
 
-// What the firmware says of itself.
-unsigned machine_boot_id(const machine_t *machine);
-const char *machine_state(const machine_t *machine);
+// Cycles since the program began.
+uint64_t machine_now(const machine_t *machine);
 
 #endif

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "requests.h"
 
+#include "marks.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -83,8 +85,8 @@ static void state(const session_t *session, text_t *reply)
 	const sample_t *s = machine_sample(machine, machine->ms);
 	bool is_zero = s->duty[0] == 0 && s->duty[1] == 0 && s->duty[2] == 0;
 	text_add(reply, "{\"time_ms\": %llu, \"firmware\": \"avr\", \"boot_id\": %u, \"mode\": \"%s\", \"state\": \"%s\", ",
-	         (unsigned long long)machine->ms, machine_boot_id(machine), session->is_running ? "run" : "step",
-	         machine_state(machine));
+	         (unsigned long long)machine->ms, marks_boot_id(machine), session->is_running ? "run" : "step",
+	         marks_state(machine));
 	text_add(reply, "\"duty\": [%d, %d, %d], \"drive_is_zero\": %s, \"currents_mA\": [%.3f, %.3f, %.3f]}\n", s->duty[0],
 	         s->duty[1], s->duty[2], is_zero ? "true" : "false", s->current[0] * 1e3, s->current[1] * 1e3,
 	         s->current[2] * 1e3);

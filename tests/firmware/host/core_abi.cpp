@@ -1,8 +1,8 @@
 // The firmware's core behind C functions, for a test in another language. A tick is followed by its report at once.
-#include "../../../control/firmware/core/board.h"
-#include "../../../control/firmware/core/boot_count.h"
-#include "../../../control/firmware/core/fixed_point.h"
-#include "../../../control/firmware/core/reset_cause.h"
+#include "../../../control/firmware/portable/board.h"
+#include "../../../control/firmware/portable/boot_count.h"
+#include "../../../control/firmware/portable/fixed_point.h"
+#include "../../../control/firmware/portable/reset_cause.h"
 
 using pivotrig::Board;
 

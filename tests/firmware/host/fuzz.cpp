@@ -2,7 +2,7 @@
 // prints what is left: the state's number, the PWM steps, and how many ticks drove.
 #include <stdio.h>
 
-#include "../../../control/firmware/core/board.h"
+#include "../../../control/firmware/portable/board.h"
 
 int main() {
     pivotrig::Board board;
