@@ -228,13 +228,13 @@ def _world(settings: RigFile, coils: CoilSet, realtime: bool) -> tuple[World, st
 def _board(settings: RigFile, realtime: bool) -> tuple[Board, str]:
     coils = settings.coils
     windings = _winding(coils.x), _winding(coils.y), _winding(coils.z)
+    boot_id = settings.simulation.seed % 0xFFFF + 1
     match settings.simulation.board:
         case "twin":
             name = next(_names)
-            boot_id = settings.simulation.seed % 0xFFFF + 1
             return TwinBoard(name, windings, coils.supply_V, boot_id=boot_id), f"sim://{name}"
         case "emulated":
-            board = EmulatedBoard(prepare(), windings, coils.supply_V, realtime)
+            board = EmulatedBoard(prepare(), windings, coils.supply_V, realtime, boot_id)
             return board, board.port
         case url:
             return RemoteBoard(url, realtime=realtime), settings.link.port

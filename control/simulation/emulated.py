@@ -120,10 +120,16 @@ class EmulatedBoard(EmulatorPort):
     """The world's board: the emulator, started for it and ended with it. port: its serial port."""
 
     def __init__(
-        self, emulation: Emulation, windings: Sequence[Winding], supply: float, realtime: bool
+        self,
+        emulation: Emulation,
+        windings: Sequence[Winding],
+        supply: float,
+        realtime: bool,
+        boot_id: int = 1,
     ) -> None:
         options = [*coil_options(windings, supply), *([] if realtime else ["--paused"])]
-        self._emulator = EmulatorProcess(emulation, "--linger", f"{LINGER:g}", *options)
+        options += ["--linger", f"{LINGER:g}", "--boot-id", str(boot_id)]
+        self._emulator = EmulatorProcess(emulation, *options)
         self.port = self._emulator.serial
         try:
             super().__init__(self._emulator.control, realtime)

@@ -86,6 +86,19 @@ def test_an_emulated_board_keeps_real_time() -> None:
         assert passed > 300
 
 
+@pytest.mark.parametrize("boot_id", [1, 2, 700, 65535])
+def test_the_first_boot_has_the_boot_id_that_was_asked_for_and_the_next_one_the_next(boot_id: int) -> None:
+    with (
+        process_of("avr", "--boot-id", str(boot_id)) as (_, control),
+        closing(RemoteBoard(control, realtime=False)) as board,
+    ):
+        board.advance(20)
+        assert board.state()["boot_id"] == boot_id
+        board.reset()
+        board.advance(20)
+        assert board.state()["boot_id"] == boot_id % 65535 + 1
+
+
 def test_what_is_no_firmware_is_refused(tmp_path: Path) -> None:
     nothing = tmp_path / "nothing.elf"
     nothing.write_text("nothing")
@@ -94,7 +107,8 @@ def test_what_is_no_firmware_is_refused(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "option", [["--supply-V", "66"], ["--linger", "nan"], ["--control-port", "70000"], ["x"]]
+    "option",
+    [["--supply-V", "66"], ["--linger", "nan"], ["--control-port", "70000"], ["--boot-id", "0"], ["x"]],
 )
 def test_an_option_out_of_range_is_refused(option: list[str]) -> None:
     with pytest.raises(EmulationFailed, match="did not start"):

@@ -5,6 +5,7 @@
 #include "pins.h"
 
 #include <simavr/avr_adc.h>
+#include <simavr/avr_eeprom.h>
 #include <simavr/avr_extint.h>
 #include <simavr/sim_elf.h>
 #include <stdio.h>
@@ -65,6 +66,20 @@ static void on_conversion(avr_irq_t *irq, uint32_t value, void *param)
 	for (int k = 0; k < COILS; k++)
 		avr_raise_irq(input + k, millivolt(coil_sense_count(&machine->coils.coil[k])));
 	avr_raise_irq(input + SUPPLY_CHANNEL, millivolt(coils_supply_count(&machine->coils)));
+}
+
+// ---- interrupts
+
+// simavr forgets an interrupt that falls due while it is masked; the processor serves it when the mask is lifted.
+static void on_timer_mask(avr_t *avr, avr_io_addr_t address, uint8_t value, void *param)
+{
+	(void)param;
+	avr->data[address] = value;
+	for (int k = 0; k < avr->interrupts.vector_count; k++) {
+		avr_int_vector_t *vector = avr->interrupts.vector[k];
+		if (vector->enable.reg == address && avr_regbit_get(avr, vector->enable) && avr_regbit_get(avr, vector->raised))
+			avr_raise_interrupt(avr, vector);
+	}
 }
 
 // ---- running
@@ -193,7 +208,17 @@ static bool make_avr(machine_t *machine)
 	return uart_connect(&machine->uart, avr, &machine->line, &machine->trace);
 }
 
-bool machine_load(machine_t *machine, const char *elf)
+// The EEPROM as the boot before has left it: control/firmware/portable/boot_count.h; empty before the first boot.
+static void remember_boot(machine_t *machine, uint16_t boot_id)
+{
+	uint16_t last = (uint16_t)(boot_id - 1);
+	uint8_t record[] = {(uint8_t)last, (uint8_t)(last >> 8), (uint8_t)~last, (uint8_t)(~last >> 8)};
+	avr_eeprom_desc_t content = {.ee = record, .offset = 0, .size = sizeof record};
+	if (boot_id > 1)
+		avr_ioctl(machine->avr, AVR_IOCTL_EEPROM_SET, &content);
+}
+
+bool machine_load(machine_t *machine, const char *elf, uint16_t boot_id)
 {
 	elf_firmware_t firmware;
 	memset(&firmware, 0, sizeof firmware);
@@ -211,6 +236,7 @@ bool machine_load(machine_t *machine, const char *elf)
 	machine->sensed_at = address_of(&firmware, "sensed");
 	machine->shown_at = address_of(&firmware, "shown");
 	connect(machine);
+	remember_boot(machine, boot_id);
 	reset(machine, POWER_ON);
 	return true;
 }

@@ -47,8 +47,9 @@ typedef struct {
 	bool has_crashed;
 } machine_t;
 
-// False, with a word on stderr, when the ELF file cannot be run. The coils and the line are to be set up before.
-bool machine_load(machine_t *machine, const char *elf);
+// The first boot gets `boot_id`. False, with a word on stderr, when the ELF file cannot be run. The coils and the line
+// are to be set up before.
+bool machine_load(machine_t *machine, const char *elf, uint16_t boot_id);
 
 // Runs one millisecond; `machine_sample` then gives its end.
 void machine_run(machine_t *machine);

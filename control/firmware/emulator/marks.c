@@ -78,18 +78,6 @@ static void on_interrupt(avr_irq_t *irq, uint32_t value, void *param)
 		stop(&machine->interrupt, machine_now(machine));
 }
 
-// simavr forgets an interrupt that falls due while it is masked; the processor serves it when the mask is lifted.
-static void on_timer_mask(avr_t *avr, avr_io_addr_t address, uint8_t value, void *param)
-{
-	(void)param;
-	avr->data[address] = value;
-	for (int k = 0; k < avr->interrupts.vector_count; k++) {
-		avr_int_vector_t *vector = avr->interrupts.vector[k];
-		if (vector->enable.reg == address && avr_regbit_get(avr, vector->enable) && avr_regbit_get(avr, vector->raised))
-			avr_raise_interrupt(avr, vector);
-	}
-}
-
 unsigned marks_boot_id(const machine_t *machine)
 {
 	return machine->shown_at == 0 ? 0 : (uint16_t)word(machine, machine->shown_at);

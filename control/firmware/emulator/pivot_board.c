@@ -28,6 +28,7 @@ typedef struct {
 	const char *firmware;
 	int control_port;
 	double linger;
+	uint16_t boot_id;
 	double supply;
 	double resistance[COILS], inductance[COILS]; // ohm, mH
 	bool is_paused; // until the first request to step or run
@@ -45,8 +46,7 @@ static void end(int signal)
 static int usage(void)
 {
 	fprintf(stderr, "usage: pivot_board --firmware ELF [--control-port N] [--linger S] [--boot-id N] [--supply-V V]\n"
-	                "    [--resistance-ohm X Y Z] [--inductance-mH X Y Z] [--end-with-stdin] [--paused]\n"
-	                "A boot id is counted by the firmware; the option is taken for the twin's sake and has no effect.\n");
+	                "    [--resistance-ohm X Y Z] [--inductance-mH X Y Z] [--end-with-stdin] [--paused]\n");
 	return EXIT_USAGE;
 }
 
@@ -81,7 +81,8 @@ static bool take_option(options_t *options, int option, int count, char **argume
 	case 'l':
 		return read_number(optarg, 0.0, 1e9, &options->linger);
 	case 'b':
-		return read_number(optarg, 1, 65535, &number);
+		options->boot_id = read_number(optarg, 1, 65535, &number) ? (uint16_t)number : 0;
+		return options->boot_id != 0;
 	case 's':
 		return read_number(optarg, 0.0, 65.0, &options->supply);
 	case 'r':
@@ -147,6 +148,7 @@ int main(int count, char **arguments)
 	static machine_t machine;
 	static control_port_t control;
 	options_t options = {.linger = 10.0,
+	                     .boot_id = 1,
 	                     .supply = 24.0,
 	                     .resistance = {2.5, 2.0, 1.5},
 	                     .inductance = {125.0, 55.0, 14.0},
@@ -160,7 +162,7 @@ int main(int count, char **arguments)
 		perror("cannot open the serial line or the control port");
 		return EXIT_FAILURE;
 	}
-	if (!machine_load(&machine, options.firmware))
+	if (!machine_load(&machine, options.firmware, options.boot_id))
 		return EXIT_FAILURE;
 	if (options.is_paused)
 		control.stepper = SOMEBODY_TO_COME;
