@@ -15,6 +15,7 @@ from control.arbiter import Finding, Severity
 from control.coil_heat import ASSUMED_AT_START, CoilHeat
 from control.controllers.manual import Jog
 from control.gait import Gait
+from control.instant import Instant, snapshot_of
 from control.link.conversion import LinkError
 from control.model import PIVOT_A, Frame, Pivot, Pose, Tracking
 from control.news import Announcement, Ended, News
@@ -336,38 +337,17 @@ class ControlLoop:
     # What everybody may see ----------------------------------------------------------------------
 
     def _snapshot(self) -> Snapshot:
-        parts, telemetry, walk, pose = self._parts, self._vitals.telemetry, self._walk, self._pose
-        currents = telemetry.currents if telemetry is not None else ZERO
-        reference = walk.reference if walk is not None else None
-        return Snapshot(
+        instant = Instant(
             tick=self._tick,
             time=self._now,
-            captured_at=parts.perception.frame.captured_at if parts.perception.frame is not None else None,
-            rig=self._state,
+            state=self._state,
             reason=self._why(),
-            faults=self._vitals.faults(self._latched),
-            simulated=parts.simulated,
-            pose=pose,
+            latched=self._latched,
+            pose=self._pose,
             pose_sigma=self._sigma,
-            observation=parts.perception.observation,
-            tracking=parts.perception.tracking,
-            tracking_age=parts.perception.age,
-            command=parts.actuation.command,
-            reference=reference,
-            error=pose.distance_to(*reference) if pose is not None and reference is not None else None,
-            currents=currents,
-            measured_currents=telemetry.measured_currents if telemetry is not None else ZERO,
-            field=parts.coils.local_field(pose.x, pose.y, currents) if pose is not None else ZERO,
-            limited_by=parts.actuation.limited_by,
-            coil_heat=self._vitals.heat.shares,
-            refusals=self._vitals.refusals,
-            body_tilt=parts.body_tilt(abs(telemetry.elevation))
-            if self._state in ENERGISED and telemetry
-            else 0.0,
-            run=walk.progress(self._state is RigState.HELD) if walk is not None else None,
-            timing=self._timing.figures(),
-            link=parts.link.status,
+            walk=self._walk,
         )
+        return snapshot_of(instant, self._parts, self._vitals, self._timing)
 
     def _why(self) -> str:
         """The reason of the state; while disarmed, what stands in the way of arming."""

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from control.gait import Gait
-from control.snapshot import RigState
+from control.snapshot import RigState, Vector
 
 
 class Refused(Exception):
@@ -87,11 +87,11 @@ class Limits:
     square outside which it is not driven at all, m.
     """
 
-    currents: tuple[float, float, float] = (8.0, 8.0, 8.0)
-    field: float = 0.015
-    rate: float = math.radians(360.0)
-    soft: float = 0.062
-    hard: float = 0.068
+    currents: Vector
+    field: float
+    rate: float
+    soft: float
+    hard: float
 
 
 def check_gait(gait: Gait, limits: Limits) -> None:

@@ -6,6 +6,7 @@ import itertools
 import math
 import time
 from collections.abc import Callable, Sequence
+from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -97,15 +98,20 @@ def build_machine(settings: RigFile, *, realtime: bool, data: Path | None = None
     coils = coil_set(settings)
     _check_field_slew(settings, coils)
     model = _camera_model(settings)
-    world, port = _world(settings, coils, realtime) if settings.is_simulated else (None, settings.link.port)
-    camera = _camera(settings, model, world, realtime)
-    seams = _seams(settings, world, camera)
-    link = seams.link(port, settings.link.baud, board_configuration(settings), camera.now)
-    traffic = _traffic(settings, link, camera, data)
     tracker = _tracker(settings, model)
-    parts = _parts(settings, coils, link, seams.tracker(tracker), seams, simulated=world is not None)
-    loop = ControlLoop(parts, time.perf_counter, camera.now())
-    faults = seams.faults(camera.now, loop)
+    with ExitStack() as devices:
+        world, port = _world(settings, coils, realtime) if settings.is_simulated else (None, settings.link.port)
+        if world is not None:
+            devices.callback(world.close)
+        camera = _camera(settings, model, world, realtime)
+        devices.callback(camera.close)
+        seams = _seams(settings, world, camera)
+        link = seams.link(port, settings.link.baud, board_configuration(settings), camera.now)
+        traffic = _traffic(settings, link, camera, data)
+        parts = _parts(settings, coils, link, seams.tracker(tracker), seams, simulated=world is not None)
+        loop = ControlLoop(parts, time.perf_counter, camera.now())
+        faults = seams.faults(camera.now, loop)
+        devices.pop_all()  # the machine closes them from now on
     body_height = settings.robot.body_height_mm * MM
     return Machine(settings, camera, model, body_height, tracker, coils, link, loop, world, faults, traffic)
 
@@ -160,7 +166,6 @@ def _gait_model(settings: RigFile) -> GaitModel:
 
 
 def coil_set(settings: RigFile) -> CoilSet:
-    """The coils as the rig file has them."""
     """The rig's coils; raises ValueError when they cannot make every direction of field."""
     coils = settings.coils
     pairs = [_pair("x", coils.x), _pair("y", coils.y), _pair("z", coils.z)]
@@ -221,8 +226,9 @@ def _world(settings: RigFile, coils: CoilSet, realtime: bool) -> tuple[World, st
         simulation.start_x_mm * MM, simulation.start_y_mm * MM, math.radians(simulation.start_heading_deg)
     )
     plant = build_plant(simulation.plant, settings.robot.length_mm * MM, start, simulation.seed)
+    true_coils, wiring = _true_coils(settings, coils), Wiring(simulation.wiring)
     board, port = _board(settings, realtime)
-    return World(board, plant, _true_coils(settings, coils), wiring=Wiring(simulation.wiring)), port
+    return World(board, plant, true_coils, wiring=wiring), port
 
 
 def _board(settings: RigFile, realtime: bool) -> tuple[Board, str]:

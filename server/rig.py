@@ -128,8 +128,7 @@ class Rig:
         self.announcements.close()
         if self._task is not None:
             self._task.cancel()
-            with contextlib.suppress(asyncio.CancelledError):
-                await self._task
+            await asyncio.gather(self._task, return_exceptions=True)  # what it failed with has been told of
         with contextlib.suppress(Refused):
             async with self._thread.turn(LAST_TURN):
                 await asyncio.to_thread(self._close)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import secrets
+import threading
 from collections import deque
 from collections.abc import Iterator
 from dataclasses import replace
@@ -19,14 +20,16 @@ News = tuple[str, Run]
 
 
 class RunList:
-    """Written by the rig's thread and by the event loop, one after the other."""
+    """Written by the rig's thread and by the event loop, read by everybody."""
 
     def __init__(self) -> None:
+        self._one_at_a_time = threading.Lock()
         self._runs: deque[Run] = deque(maxlen=RUNS_KEPT)
         self._news: deque[News] = deque(maxlen=NEWS_KEPT)
 
     def __iter__(self) -> Iterator[Run]:
-        return iter(self._runs)
+        with self._one_at_a_time:
+            return iter(tuple(self._runs))
 
     def __bool__(self) -> bool:
         return bool(self._runs)
@@ -36,16 +39,18 @@ class RunList:
 
     def of(self, id: str) -> Run:
         """The run of that id; raises StopIteration for one that was never started."""
-        return next(run for run in self._runs if run.id == id)
+        return next(run for run in self if run.id == id)
 
     def start(self, run: Run) -> None:
-        self._runs.appendleft(run)
+        with self._one_at_a_time:
+            self._runs.appendleft(run)
         self._news.append(("started", run))
 
     def change_newest(self, selection: Selection) -> None:
-        run = self._runs[0]
-        self._runs[0] = replace(run, request=replace(run.request, selection=selection))
-        self._news.append(("changed", self._runs[0]))
+        with self._one_at_a_time:
+            run = self._runs[0]
+            run = self._runs[0] = replace(run, request=replace(run.request, selection=selection))
+        self._news.append(("changed", run))
 
     def end(self, ended: Ended) -> None:
         self._finish(ended.id, state=ended.state, reason=ended.reason, metrics=ended.metrics)
@@ -55,11 +60,12 @@ class RunList:
         self._finish(id, state=RunState.ABORTED, reason=reason)
 
     def _finish(self, id: str, **outcome: object) -> None:
-        for index, run in enumerate(self._runs):
-            if run.id == id:
-                self._runs[index] = replace(run, **outcome)  # type: ignore[arg-type]
-                self._news.append((self._runs[index].state.value, self._runs[index]))
-                return
+        with self._one_at_a_time:
+            for index, run in enumerate(self._runs):
+                if run.id == id:
+                    run = self._runs[index] = replace(run, **outcome)  # type: ignore[arg-type]
+                    self._news.append((run.state.value, run))
+                    return
 
     def take_news(self) -> list[News]:
         """What happened since the last call, oldest first."""

@@ -81,6 +81,11 @@ class EmulatorPort(RemoteBoard):
         tick, interrupt = Stretch(**told.pop("tick")), Stretch(**told.pop("interrupt"))
         return Cycles(tick, interrupt, **told)
 
+    def released(self) -> tuple[bool, bool, bool]:
+        """Whether the board lets go of each coil's EN/DIAG line."""
+        x, y, z = map(bool, self.told("enable"))
+        return x, y, z
+
     def trace(self) -> None:
         """Begins to write down what the firmware does."""
         self.ask("trace on")

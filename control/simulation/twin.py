@@ -21,23 +21,6 @@ _DRIVING = BoardCode.DRIVING
 _U16 = 0xFFFF
 _U32 = 0xFFFFFFFF
 
-CONFIGURATION_LIMITS = {
-    "current_limits": (1, 12000),
-    "dead_man": (10, 500),
-    "ramp": (1, 1000),
-    "field_slew": (1, 65535),
-    "resistances": (100, 10000),
-    "inductances": (300, 16000),
-    "supply": (5000, 50000),
-    "max_field": (1, 32767),
-    "max_rate": (1, 0x0FFFFFFF),
-    "max_tilt": (1, 10923),
-    "sense_gains": messages.SENSE_GAINS,
-    "supply_scale": (0, 65000),
-}
-"""Allowed configuration: within these no intermediate of the arithmetic leaves 32 bits."""
-
-
 class FirmwareTwin:
     """One boot of the board; a reset is a new object with a new boot id."""
 
@@ -276,4 +259,4 @@ def _configuration_is_allowed(message: messages.Configure) -> bool:
         if not all(low <= number <= high for number in (value if isinstance(value, tuple) else (value,))):
             return False
     constants = zip(message.resistances, message.inductances, strict=True)
-    return all(2 * inductance >= resistance for resistance, inductance in constants)
+    return not any(is_too_fast(resistance, inductance) for resistance, inductance in constants)

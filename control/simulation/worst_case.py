@@ -1,7 +1,8 @@
 """The heaviest load that a host can put on the board, for counting the cycles of its 1 kHz interrupt.
 
 The board drives a field that turns, with an elevation ramp every tenth of a second, currents that are scaled back
-at every millisecond, and telemetry; the commands come at 100/s, or as fast as the line carries them.
+and a supply that is sensed anew at every millisecond, and telemetry; the commands come at 100/s, or as fast as the
+line carries them.
 """
 
 from __future__ import annotations
@@ -17,6 +18,9 @@ from control.simulation.emulator_port import Cycles
 COILS = (Winding(2.5, 0.125), Winding(2.0, 0.055), Winding(1.5, 0.014))
 SUPPLY = 24.0
 """The paper's rig: ohm, H, V."""
+
+RIPPLE = (24000, 23800)
+"""The supply at even and at odd milliseconds, mV: a few counts of the ADC, as a switched one has."""
 
 COMMAND_PERIOD = 10
 """Milliseconds between two commands: 100/s, where a camera gives 60/s."""
@@ -110,7 +114,9 @@ def _drive(board: EmulatedBoard, host: _Host, milliseconds: int, commands: int) 
     for number in range(milliseconds // COMMAND_PERIOD):
         for _ in range(commands):
             host.say(_command(number))
-        board.advance(COMMAND_PERIOD)
+        for millisecond in range(COMMAND_PERIOD):
+            board.set_condition("supply_mV", RIPPLE[millisecond % 2])
+            board.advance(1)
         host.listen_away()
 
 

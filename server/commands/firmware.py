@@ -125,6 +125,7 @@ def _confirm(made: Build, port: str, command: list[str], yes: bool) -> None:
     lines = (
         f"firmware {version} ({made.flash_bytes} bytes) goes to the board on {port}; what it runs now is lost",
         f"by: {' '.join(command)}",
+        "switch the coil supply off first: while it is written all pins of the board are open",
     )
     for line in lines:
         console.print(line, markup=False, highlight=False, soft_wrap=True)

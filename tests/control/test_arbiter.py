@@ -34,7 +34,7 @@ from control.model import Pose, Tracking
 from control.response import AWAY
 from control.safety import Limits
 
-LIMITS = Limits(soft=0.062, hard=0.068)
+LIMITS = Limits((8.0, 8.0, 8.0), field=0.015, rate=math.radians(360.0), soft=0.062, hard=0.068)
 OPEN_LEAD = Mismatch("coil", "coil x shows no current")
 GOOD = Health(
     tick_gap=0.0167,
@@ -72,6 +72,15 @@ def after(**changes: Any) -> list[tuple[Severity, str]]:
 def message(**changes: Any) -> str:
     (finding,) = assess(replace(GOOD, **changes), LIMITS)
     return finding.message
+
+
+def test_the_thresholds_are_those_that_were_derived_or_measured() -> None:
+    in_milliseconds = (FRAME_STALE, FRAME_TOO_LATE, PREDICT_FOR, TELEMETRY_STALE, LOOP_STALL, CLOCK_GAP)
+    assert in_milliseconds == (0.100, 0.150, 0.150, 0.300, 0.200, 1.0)
+    assert (CURRENT_MISMATCH, NOT_DRIVING, STUCK_SHOWN) == (0.100, 0.150, 5.0)
+    assert (LINE_POOR, LINE_BAD, FROZEN_FRAMES) == (0.01, 0.10, 3)
+    assert (WARN_AT, OFF_AT) == (0.8, 1.0)
+    assert math.radians(4.0) == AWAY
 
 
 def just_beyond(limit: float) -> float:
@@ -204,7 +213,7 @@ def test_a_robot_on_its_way_back_in_has_a_limit_of_its_own() -> None:
     assert "at (70.2, 0.0) mm, the limit is ±70.1 mm" in message(
         pose=Pose(0.0702, 0.0, 0.0), reach_limit=0.0701
     )
-    assert "at (64.0, 0.0) mm, beyond ±62 mm" in message(pose=Pose(0.064, 0.0, 0.0))
+    assert "at (64.0, -1.5) mm, beyond ±62 mm" in message(pose=Pose(0.064, -0.0015, 0.0))
 
 
 def test_a_robot_that_does_not_make_its_sweeps_is_shown_for_a_while() -> None:

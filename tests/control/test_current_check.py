@@ -66,6 +66,17 @@ def test_no_current_anywhere_is_the_sense_where_the_supply_is_on() -> None:
     assert "although the supply is on" in found.message
 
 
+def test_two_coils_are_enough_to_blame_the_sense_of_all() -> None:
+    assert look((-5.0, 5.0, 0.0), (0.0, 0.0, 0.0)).code == "sense"
+    assert look((-5.0, -5.0, 0.0), (0.0, 0.0, 0.0), supply_is_sensed=False).code == "supply"
+
+
+@pytest.mark.parametrize(("missing", "agrees"), [(1.19, True), (1.21, False)])
+def test_a_seventh_of_the_limit_may_be_missing(missing: float, agrees: bool) -> None:
+    for sensed in (5.0 - missing, 5.0 + missing):
+        assert (look((5.0, 0.0, 0.0), (sensed, 0.0, 0.0)) is AGREED) == agrees
+
+
 def test_a_coil_that_is_hardly_asked_says_nothing_about_the_supply() -> None:
     """z is asked for less than may be missing, so x and y are all that could show a current."""
     assert look((5.0, 5.0, ALLOWED), (0.0, 0.0, 0.0), supply_is_sensed=False).code == "supply"

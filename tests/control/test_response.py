@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from control.model import wrap
-from control.response import ALIGNED, AWAY, JUMP, MOST_COUNTED, ResponseWatch
+from control.response import AWAY, FAR, JUMP, MOST_COUNTED, STILL, ResponseWatch
 
 FRAME = 1.0 / 60.0
 NOISE = math.radians(0.35)
@@ -81,61 +81,113 @@ def test_a_sighting_elsewhere_is_no_turn() -> None:
     watch.see(0.0, 0.0)
     watch.see(0.0, JUMP + 1e-9)
     assert watch.turned_away == 0.0
+    watch.see(0.0, 0.0)
+    assert watch.turned_away == 0.0
+    watch.see(0.0, -JUMP - 1e-9)
+    assert watch.turned_away == 0.0
     watch.forget()
     watch.see(0.0, 0.0)
     watch.see(0.0, JUMP - 1e-9)
     assert watch.turned_away == MOST_COUNTED
 
 
+def test_the_thresholds_are_many_times_the_noise() -> None:
+    assert [round(math.degrees(angle), 9) for angle in (FAR, AWAY, MOST_COUNTED, JUMP)] == [20, 4, 2, 45]
+    assert 8 * NOISE * math.sqrt(2.0) < AWAY
+
+
 def test_three_sightings_must_show_it() -> None:
     watch, step = ResponseWatch(), math.radians(5.0)
     found = []
     for k in range(5):
-        watch.see(0.0, k * step)
+        watch.see(0.0, 0.6 + k * step)
         found.append(watch.turned_away)
     assert found == pytest.approx([0.0, AWAY / 2, AWAY, 1.5 * AWAY, 2 * AWAY])
 
 
-def test_what_is_counted_is_taken_back_by_following_and_by_agreement() -> None:
+def test_what_is_counted_is_taken_back_by_following() -> None:
     watch = ResponseWatch()
-    for body in (0.1, 0.12, 0.14):
+    for body in (0.6, 0.62, 0.64):
         watch.see(0.0, body)
     assert watch.turned_away == pytest.approx(0.04)
-    watch.see(0.0, 0.13)
+    watch.see(0.0, 0.63)
     assert watch.turned_away == pytest.approx(0.03)
-    watch.see(0.0, 0.09)
+    watch.see(0.0, 0.59)
     assert watch.turned_away == 0.0, "never below none"
-    watch.see(0.0, 0.11)
+    watch.see(0.0, 0.61)
     assert watch.turned_away == pytest.approx(0.02)
-    watch.see(0.11, 0.11)
-    assert watch.turned_away == 0.0
 
 
-def test_within_alignment_nothing_counts_and_just_beyond_it_does() -> None:
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+def test_a_field_that_turns_back_begins_anew(sense) -> None:
     watch = ResponseWatch()
-    watch.see(0.0, ALIGNED - 0.01)
-    watch.see(0.0, ALIGNED)
+    for k in range(4):
+        watch.see(sense * 0.02 * k, -sense * 0.02 * k)
+    assert watch.turned_away == pytest.approx(0.06)
+    watch.see(sense * 0.04, -sense * 0.06)
     assert watch.turned_away == 0.0
-    watch.see(0.0, ALIGNED + 0.001)
-    assert watch.turned_away == pytest.approx(0.001)
+
+
+def test_a_small_lead_of_a_field_that_stands_still_pulls_nothing_and_a_large_one_does() -> None:
+    watch = ResponseWatch()
+    watch.see(0.0, FAR - 0.01)
+    watch.see(0.0, FAR - 1e-9)
+    assert watch.turned_away == 0.0
+    watch.see(0.0, FAR + 0.001)
+    assert watch.turned_away == pytest.approx(0.001, rel=1e-5)
+
+
+def test_a_field_that_hardly_moves_stands_still() -> None:
+    watch = ResponseWatch()
+    watch.see(0.0, 0.0)
+    watch.see(STILL, -0.01)
+    assert watch.turned_away == 0.0
+    watch.see(2.1 * STILL, -0.02)
+    assert watch.turned_away == pytest.approx(0.01)
+
+
+@pytest.mark.parametrize("offset", [4.0, 10.0, 15.0, -15.0])
+def test_a_camera_that_is_not_registered_with_the_coils_never_counts(offset) -> None:
+    """The body follows, seen at a constant angle to where the field is believed to point."""
+    chance, watch, half, body, start = random.Random(9), ResponseWatch(), math.radians(1.5), 0.0, 0.0
+    watch.see(0.0, 0.0)
+    for sweep in range(20):
+        field = turning((-1.0) ** sweep * math.radians(60.0), math.radians(10.0), start)
+        start = field[-1]
+        for heading in field:
+            body = min(max(body, heading - half), heading + half)
+            watch.see(heading, body + math.radians(offset) + chance.gauss(0.0, NOISE))
+            assert watch.turned_away < AWAY
+
+
+def test_sweeps_of_ten_degrees_are_enough_to_notice_a_mirror() -> None:
+    watch, start, half, body, worst = ResponseWatch(), 0.0, math.radians(1.5), 0.0, 0.0
+    for sweep in range(2):
+        field = turning((-1.0) ** sweep * math.radians(60.0), math.radians(10.0), start)
+        start = field[-1]
+        for heading in field:
+            body = min(max(body, -heading - half), -heading + half)
+            watch.see(heading, body)
+            worst = max(worst, watch.turned_away)
+    assert worst > AWAY
 
 
 @pytest.mark.parametrize("sense", [1.0, -1.0])
 def test_it_counts_alike_across_the_half_turn(sense) -> None:
     watch = ResponseWatch()
     for body in (3.10, 3.12, 3.14, 3.16, 3.18):
-        watch.see(sense * 2.9, wrap(sense * body))
+        watch.see(sense * 2.4, wrap(sense * body))
     assert watch.turned_away == pytest.approx(0.08)
 
 
 def test_forgetting_begins_anew() -> None:
     watch = ResponseWatch()
-    for body in (0.1, 0.2, 0.3, 0.4, 0.5):
+    for body in (0.6, 0.7, 0.8, 0.9, 1.0):
         watch.see(0.0, body)
     assert watch.turned_away > AWAY
     watch.forget()
     assert watch.turned_away == 0.0
-    watch.see(0.0, 0.6)
+    watch.see(0.0, 1.1)
     assert watch.turned_away == 0.0, "the first sighting has nothing before it"
 
 
@@ -150,6 +202,6 @@ def test_no_float_makes_it_a_nonsense(sightings) -> None:
 @pytest.mark.parametrize("nonsense", [(math.nan, 0.2), (0.0, math.nan), (math.inf, 0.2), (0.0, math.inf)])
 def test_a_sighting_that_is_none_is_left_out(nonsense) -> None:
     watch = ResponseWatch()
-    for sighting in ((0.0, 0.1), nonsense, (0.0, 0.11)):
+    for sighting in ((0.0, 0.6), nonsense, (0.0, 0.61)):
         watch.see(*sighting)
     assert watch.turned_away == pytest.approx(0.01)

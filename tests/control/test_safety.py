@@ -71,7 +71,7 @@ def test_no_state_with_current_but_armed_and_running() -> None:
 
 # Gaits -------------------------------------------------------------------------------------------
 
-LIMITS = Limits(field=0.015, rate=math.radians(360.0))
+LIMITS = Limits((8.0, 8.0, 8.0), field=0.015, rate=math.radians(360.0), soft=0.062, hard=0.068)
 
 
 def test_a_gait_at_the_limits_is_allowed() -> None:
@@ -81,11 +81,13 @@ def test_a_gait_at_the_limits_is_allowed() -> None:
 
 @pytest.mark.parametrize("field", [0.01501, -0.001, math.nan, math.inf])
 def test_a_field_beyond_its_limit_is_refused_in_the_labs_units(field: float) -> None:
-    with pytest.raises(Refused, match="the field of .* mT is beyond this rig's 15 mT; choose less"):
+    with pytest.raises(Refused, match=r"the field of .* mT is beyond this rig's 15 mT; choose less"):
         check_gait(replace(Gait(), field=field), LIMITS)
 
 
 @pytest.mark.parametrize("rate", [math.radians(360.1), -0.1, math.nan, math.inf])
 def test_a_swing_beyond_its_limit_is_refused_in_the_labs_units(rate: float) -> None:
-    with pytest.raises(Refused, match="the fastest swing of .* degrees/s is beyond this rig's 360 degrees/s"):
+    with pytest.raises(
+        Refused, match=r"the fastest swing of .* degrees/s is beyond this rig's 360 degrees/s"
+    ):
         check_gait(replace(Gait(), max_rate=rate), LIMITS)

@@ -7,7 +7,16 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from control.model import PIVOT_A, PIVOT_B, Pose, swing
-from control.workspace_guard import TOLERANCE, WayBack, WorkspaceGuard, arc_to_stop, farthest, reach
+from control.workspace_guard import (
+    ARC_STEP,
+    LONGEST_ARC,
+    TOLERANCE,
+    WayBack,
+    WorkspaceGuard,
+    arc_to_stop,
+    farthest,
+    reach,
+)
 
 LENGTH = 0.010
 SOFT, HARD = 0.062, 0.068
@@ -61,6 +70,13 @@ def test_a_half_turn_reaches_out_in_its_middle() -> None:
     pose = Pose(0.060, 0.0, EAST)
     assert farthest(pose, PIVOT_A, math.radians(180.0), LENGTH) == pytest.approx(0.065, abs=2e-5)
     assert reach(swing(pose, PIVOT_A, math.radians(180.0), LENGTH)) == pytest.approx(0.060)
+
+
+def test_the_numbers_are_those_of_a_robot_of_a_centimetre() -> None:
+    """The sway of 10 degrees, and the bulge of an arc between two looks, at 10 mm between the pivots."""
+    assert 0.005 * (1.0 - math.cos(math.radians(10.0))) < TOLERANCE < 1.5e-4
+    assert 0.005 * (1.0 - math.cos(0.5 * ARC_STEP)) < 1.3e-5
+    assert math.radians(360.0) == LONGEST_ARC
 
 
 def test_no_motion_stays_where_it_is() -> None:

@@ -51,6 +51,7 @@ def library() -> ctypes.CDLL:
     loaded.board_boot.restype = ctypes.c_void_p
     loaded.core_sine.restype = ctypes.c_int16
     loaded.core_reset_cause.restype = ctypes.c_uint8
+    loaded.core_reset_cause_handed_over.restype = ctypes.c_uint8
     loaded.core_count_boot.restype = ctypes.c_uint16
     return loaded
 
@@ -101,6 +102,10 @@ def sine(angle: int) -> int:
 
 def reset_cause(flags: int) -> ResetCause:
     return ResetCause(library().core_reset_cause(flags))
+
+
+def reset_cause_handed_over(bootloader: int, flags: int) -> ResetCause:
+    return ResetCause(library().core_reset_cause_handed_over(bootloader, flags))
 
 
 class BootMemory:

@@ -90,6 +90,7 @@ def test_flash_shows_what_it_will_do_and_asks_first(writer: Writer, port: str, t
     done = told("flash", "--port", port, "--folder", str(tmp_path), answer="n\n")
     assert done.exit_code == 1
     assert port in done.stderr
+    assert "switch the coil supply off" in done.stderr
     assert "nothing was written" in done.stderr
     assert writer.calls == []
 

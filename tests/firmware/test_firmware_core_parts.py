@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from core_library import BootMemory, reset_cause, sine
+from core_library import BootMemory, reset_cause, reset_cause_handed_over, sine
 
 from control.link.messages import ResetCause
 from control.simulation.fixed_point import SINE
@@ -60,3 +60,24 @@ def test_a_record_that_was_cut_short_by_a_power_failure_is_passed_over(cut: tupl
 )
 def test_the_cause_of_a_reset_is_the_first_that_happened(flags: int, cause: ResetCause) -> None:
     assert reset_cause(flags) == cause
+
+
+@pytest.mark.parametrize(
+    ("bootloader", "flags", "cause"),
+    [
+        (0x0404, 8, ResetCause.UNKNOWN),
+        (0x0405, 1, ResetCause.UNKNOWN),
+        (0x0406, 1, ResetCause.POWER_ON),
+        (0x0406, 8, ResetCause.UNKNOWN),
+        (0x0602, 8, ResetCause.UNKNOWN),
+        (0x0602, 0b1100, ResetCause.BROWN_OUT),
+        (0x0700, 8, ResetCause.WATCHDOG),
+        (0x0803, 0b1010, ResetCause.EXTERNAL),
+        (0xFFFF, 8, ResetCause.UNKNOWN),
+    ],
+)
+def test_a_bootloader_is_believed_as_far_as_its_version_can_know(
+    bootloader: int, flags: int, cause: ResetCause
+) -> None:
+    """Before 7.0 Optiboot reports an external reset as the watchdog's, which the doctor would warn of."""
+    assert reset_cause_handed_over(bootloader, flags) == cause

@@ -13,6 +13,8 @@ from control.gait import Gait
 from control.model import PIVOT_A, PIVOT_B, Frame, Pose, Tracking
 from control.runs import Choice, RunRequest, Selection
 from control.safety import Refused
+from control.simulation.plant import SlipPlant
+from control.simulation.slip import SLIP_TABLE
 from control.snapshot import RigState
 from server.settings import RigFile, VisionSection
 from tests.faults.fault_bench import EIGHT, GAIT, FaultBench, fault_bench
@@ -338,25 +340,21 @@ def test_a_field_that_needs_too_much_is_scaled_back_and_says_why(bench: FaultBen
 # Warnings and consent ----------------------------------------------------------------------------
 
 
-class Walled:
+class Walled(SlipPlant):
     """A robot that a wall keeps from following the field any further round."""
 
-    def __init__(self, plant, wall: float) -> None:
-        self._plant = plant
-        self._wall = wall
-
-    def __getattr__(self, name):
-        return getattr(self._plant, name)
+    wall = math.inf
 
     def step(self, field, dt) -> None:
         bx, by, bz = field
-        if math.atan2(-bx, by) > self._wall:
+        if math.atan2(-bx, by) > self.wall:
             level = math.hypot(bx, by)
-            bx, by = -level * math.sin(self._wall), level * math.cos(self._wall)
-        self._plant.step((bx, by, bz), dt)
+            bx, by = -level * math.sin(self.wall), level * math.cos(self.wall)
+        super().step((bx, by, bz), dt)
 
 
 def test_a_robot_that_sticks_is_told_of_and_walking_goes_on(bench: FaultBench) -> None:
+    plant = bench.world.plant = Walled(SLIP_TABLE, 0.010, bench.world.body().pose, seed=3)
     put(bench, 0.0, 0.0, EAST)
     bench.arm()
     slowly = Choice("straight", {"rate_deg_s": 30.0})
@@ -365,7 +363,7 @@ def test_a_robot_that_sticks_is_told_of_and_walking_goes_on(bench: FaultBench) -
     for _ in range(200):
         bench.tick()
         headings.append(bench.loop.field_at(bench.now)[0])
-    bench.world.plant = Walled(bench.world.plant, max(headings) - math.radians(5.0))
+    plant.wall = max(headings) - math.radians(5.0)
     bench.until(lambda snapshot: "stuck" in [fault.code for fault in snapshot.faults], within=10.0)
     bench.run_for(1.0)
     assert bench.snapshot.rig is RigState.RUNNING, bench.snapshot.reason

@@ -10,6 +10,10 @@ namespace {
 // Sense counts (70 mA) below which a coil's current has died away.
 constexpr uint16_t quiet_counts = 2;
 
+// Milliseconds for which an enable line stays released after the drive, at least: three times the L/R of the largest
+// coil. A sense that is dead reads quiet at full current too.
+constexpr uint16_t shortest_decay = 150;
+
 // Milliseconds after which an enable line goes low in any case: ten times the L/R of the largest coil.
 constexpr uint16_t longest_decay = 500;
 
@@ -138,7 +142,8 @@ void settle_one(Condition& condition, uint16_t counts) {
         return;
     }
     ++condition.without_drive;
-    if (counts <= quiet_counts || condition.without_drive >= longest_decay) {
+    const bool is_quiet = counts <= quiet_counts && condition.without_drive >= shortest_decay;
+    if (is_quiet || condition.without_drive >= longest_decay) {
         Bridge::disable();
         condition.is_enabled = false;
     }

@@ -103,8 +103,11 @@ void feed_watchdog() {
     }
 }
 
+// It does not sleep between two bytes: in idle mode an ATmega328P whose ADC is on starts a conversion by itself, which
+// would get between those of a round and give a coil the current of another.
 void run() {
     for (;;) {
+        barrier();  // what interrupts have written is read anew in each round
         feed_watchdog();
         if (board.has_report()) {
             board.report();

@@ -30,20 +30,10 @@ namespace start {
 
 namespace {
 
-// Optiboot keeps its version in the last two bytes of the flash, and from 4.6 on hands MCUSR over in register 2; the
-// 4.4 of a stock UNO clears the flags and says nothing.
-constexpr uint16_t bootloader_minor = FLASHEND - 1;
-constexpr uint16_t bootloader_major = FLASHEND;
-constexpr uint16_t first_that_hands_over = 0x0406;
-constexpr uint16_t empty_flash = 0xFFFF;
+// Optiboot keeps its version in the last two bytes of the flash.
+constexpr uint16_t bootloader_version = FLASHEND - 1;
 
 BootRecord* record_at(uint8_t slot) { return reinterpret_cast<BootRecord*>(slot * sizeof(BootRecord)); }
-
-bool bootloader_hands_over() {
-    const uint16_t major = pgm_read_byte(bootloader_major);
-    const uint16_t version = static_cast<uint16_t>((major << 8) | pgm_read_byte(bootloader_minor));
-    return version >= first_that_hands_over && version != empty_flash;
-}
 
 }  // namespace
 
@@ -51,7 +41,7 @@ ResetCause cause() {
     if (flags_of_processor != 0) {
         return reset_cause(flags_of_processor);
     }
-    return reset_cause(bootloader_hands_over() ? flags_in_r2 : uint8_t(0));
+    return reset_cause_handed_over(pgm_read_word(bootloader_version), flags_in_r2);
 }
 
 uint16_t count_boot() {

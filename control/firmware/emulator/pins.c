@@ -95,10 +95,15 @@ int pins_duty(const avr_t *avr, int coil)
 	return direction(avr, coil) < 0 ? -steps(avr, coil) : steps(avr, coil);
 }
 
+bool pins_released(const avr_t *avr, int coil)
+{
+	return !is_output(avr, WIRING[coil].enable);
+}
+
 static bool is_enabled(const avr_t *avr, const coils_t *coils, int coil)
 {
-	pin_t enable = WIRING[coil].enable;
-	return !coils->coil[coil].has_fault && (!is_output(avr, enable) || is_driven_high(avr, enable));
+	bool is_up = pins_released(avr, coil) || is_driven_high(avr, WIRING[coil].enable);
+	return is_up && !coils->coil[coil].has_fault;
 }
 
 double pins_drive(const avr_t *avr, const coils_t *coils, int coil)

@@ -24,6 +24,9 @@ int pins_duty(const avr_t *avr, int coil);
 // The share of the supply that the bridge puts out: none while its EN/DIAG line is low or it brakes.
 double pins_drive(const avr_t *avr, const coils_t *coils, int coil);
 
+// Whether the board lets go of the bridge's EN/DIAG line, so that it rises unless the driver pulls it down.
+bool pins_released(const avr_t *avr, int coil);
+
 // What the board reads of the EN/DIAG lines: up by their resistors unless the driver pulls them down.
 void pins_show_diagnosis(avr_t *avr, const coils_t *coils);
 

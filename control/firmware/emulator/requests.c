@@ -2,6 +2,7 @@
 #include "requests.h"
 
 #include "marks.h"
+#include "pins.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -171,6 +172,13 @@ static void add_watch(const char *name, const stopwatch_t *watch, text_t *reply)
 	         (double)watch->worst / CYCLES_PER_MS);
 }
 
+static void enable_lines(const machine_t *machine, text_t *reply)
+{
+	for (int k = 0; k < COILS; k++)
+		text_add(reply, "%s%s", k == 0 ? "[" : ", ", pins_released(machine->avr, k) ? "true" : "false");
+	text_add(reply, "]\n");
+}
+
 // Since the last time that somebody asked.
 static void cycles(machine_t *machine, text_t *reply)
 {
@@ -206,6 +214,8 @@ static bool obey(session_t *session, const words_t *words, text_t *reply)
 		reset(machine, reply);
 	else if (says(words, "cycles", 1))
 		cycles(machine, reply);
+	else if (says(words, "enable", 1))
+		enable_lines(machine, reply);
 	else
 		return says(words, "trace", 2) && trace(&machine->trace, word[1], reply);
 	return true;
@@ -216,6 +226,6 @@ void answer(session_t *session, char *request, text_t *reply)
 	words_t words = split(request);
 	if (words.count == 0 || !obey(session, &words, reply))
 		text_add(reply, "error: this is none of: step 1..%d, run, take, state, set NAME VALUE, set NAME COIL VALUE, "
-		                "reset, cycles, trace on|off|take\n",
+		                "reset, cycles, enable, trace on|off|take\n",
 		         MOST_STEPS);
 }

@@ -1,5 +1,6 @@
 // The words of the lock-step port: one request in, its answer out. The protocol is that of
-// control/simulation/lockstep.py; `trace` and `cycles` are this board's own.
+// control/simulation/lockstep.py; `trace`, `cycles` and `enable` are
+// this board's own.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef PIVOT_BOARD_REQUESTS_H
 #define PIVOT_BOARD_REQUESTS_H

@@ -23,6 +23,18 @@ inline ResetCause reset_cause(uint8_t flags) {
     return flags & watchdog ? ResetCause::Watchdog : ResetCause::Unknown;
 }
 
+// bootloader: Optiboot's major and minor version in a byte each; 0xFFFF where there is none.  flags: what it left in
+// register 2. From 4.6 on it hands MCUSR over; the 4.4 of a stock UNO clears the flags and says nothing. Before 7.0 it
+// forgets an external reset when its own watchdog ends it, so a watchdog alone may be either.
+inline ResetCause reset_cause_handed_over(uint16_t bootloader, uint8_t flags) {
+    constexpr uint16_t first_to_tell = 0x0406, first_to_remember = 0x0700, none = 0xFFFF;
+    if (bootloader < first_to_tell || bootloader == none) {
+        return ResetCause::Unknown;
+    }
+    const ResetCause cause = reset_cause(flags);
+    return cause == ResetCause::Watchdog && bootloader < first_to_remember ? ResetCause::Unknown : cause;
+}
+
 }  // namespace pivotrig
 
 #endif

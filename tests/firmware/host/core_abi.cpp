@@ -47,6 +47,10 @@ int16_t core_sine(uint16_t angle) { return pivotrig::sine(angle); }
 
 uint8_t core_reset_cause(uint8_t flags) { return static_cast<uint8_t>(pivotrig::reset_cause(flags)); }
 
+uint8_t core_reset_cause_handed_over(uint16_t bootloader, uint8_t flags) {
+    return static_cast<uint8_t>(pivotrig::reset_cause_handed_over(bootloader, flags));
+}
+
 // records: boot_record_count pairs of id and complement, of which one is rewritten. Returns the new boot id.
 uint16_t core_count_boot(uint16_t* records) {
     pivotrig::BootCount count;
