@@ -3,7 +3,7 @@ SHELL := /bin/bash
 BIN := .venv/bin
 JOBS ?= 2
 
-.PHONY: run setup test test-full lint format bench safety clean browser toolchain help
+.PHONY: run setup test test-full lint format bench safety mutate clean browser toolchain help
 
 help: ## show this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | expand -t 14
@@ -57,5 +57,8 @@ toolchain:
 	@bash .ci/environment
 	@touch $@ .stamps/run
 
+mutate: .stamps/dev toolchain ## change the safety-critical code a line at a time: does a test notice? (an hour)
+	$(BIN)/python -m tests.mutation
+
 clean: ## remove everything that was set up
-	rm -rf .venv .stamps
+	rm -rf .venv .stamps build mutants mutants.log

@@ -100,7 +100,9 @@ def build_machine(settings: RigFile, *, realtime: bool, data: Path | None = None
     model = _camera_model(settings)
     tracker = _tracker(settings, model)
     with ExitStack() as devices:
-        world, port = _world(settings, coils, realtime) if settings.is_simulated else (None, settings.link.port)
+        world, port = (
+            _world(settings, coils, realtime) if settings.is_simulated else (None, settings.link.port)
+        )
         if world is not None:
             devices.callback(world.close)
         camera = _camera(settings, model, world, realtime)

@@ -13,6 +13,7 @@ from enum import IntEnum, IntFlag
 from pathlib import Path
 
 from control.link import messages, wire
+from control.link.board_limits import CONFIGURATION_LIMITS
 from control.simulation import coil_drive, fixed_point, regulator, twin
 
 HEADER = Path(__file__).parent / "portable" / "contract.h"
@@ -118,7 +119,7 @@ def _field(name: str, kind: str) -> str:
 
 def _allowed() -> str:
     ranges = "\n".join(
-        f"constexpr Range {name} = {_braces(limits)};" for name, limits in twin.CONFIGURATION_LIMITS.items()
+        f"constexpr Range {name} = {_braces(limits)};" for name, limits in CONFIGURATION_LIMITS.items()
     )
     return f"""\
 struct Range {{

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from control.link import messages, wire
+from control.link.board_limits import objections
 from control.model import TURN, Pivot
 from control.snapshot import Vector
 
@@ -148,8 +149,9 @@ def binary_angle(angle: float) -> int:
 
 
 def configure_message(configuration: Configuration) -> messages.Configure:
+    """The message of a configuration; LinkError when the board would not accept it."""
     _check_configuration(configuration)
-    return messages.Configure(
+    message = messages.Configure(
         current_limits=_scaled(configuration.current_limits, 1e3),
         dead_man=_milliseconds(configuration.dead_man),
         ramp=_milliseconds(configuration.ramp),
@@ -163,6 +165,10 @@ def configure_message(configuration: Configuration) -> messages.Configure:
         sense_gains=_gains(configuration.sense_gains),
         supply_scale=round(configuration.supply_scale * 1e3),
     )
+    wrong = "; ".join(objections(message))
+    if wrong:
+        raise LinkError(f"board configuration: {wrong}")
+    return message
 
 
 def _check_configuration(configuration: Configuration) -> None:

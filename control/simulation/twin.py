@@ -6,6 +6,7 @@ No clock, no port: `tick` is one millisecond.  The C++ firmware is to match this
 from __future__ import annotations
 
 from control.link import messages, wire
+from control.link.board_limits import objections
 from control.link.messages import BoardCode, Flag, Refusal
 from control.simulation.coil_drive import CoilDrive
 from control.simulation.motion import FieldMotion, signed
@@ -20,6 +21,7 @@ TRANSMIT_BUFFER = 255
 _DRIVING = BoardCode.DRIVING
 _U16 = 0xFFFF
 _U32 = 0xFFFFFFFF
+
 
 class FirmwareTwin:
     """One boot of the board; a reset is a new object with a new boot id."""
@@ -129,7 +131,7 @@ class FirmwareTwin:
         if not self._greeted or self.state in (BoardCode.DRIVING, BoardCode.FAULT):
             self._refuse(Refusal.STATE)
             return
-        if not _configuration_is_allowed(message):
+        if any(objections(message)):
             self._refuse(Refusal.CONFIGURATION)
             return
         self._count_good()
@@ -250,13 +252,3 @@ class FirmwareTwin:
             (coils.supply_assumed, Flag.SUPPLY_ASSUMED),
         )
         return self._latched | sum(flag for holds, flag in conditions if holds)
-
-
-def _configuration_is_allowed(message: messages.Configure) -> bool:
-    """Within the ranges, and no coil faster than L/R = 5 ms, which a 1 kHz loop could not regulate."""
-    for name, (low, high) in CONFIGURATION_LIMITS.items():
-        value = getattr(message, name)
-        if not all(low <= number <= high for number in (value if isinstance(value, tuple) else (value,))):
-            return False
-    constants = zip(message.resistances, message.inductances, strict=True)
-    return not any(is_too_fast(resistance, inductance) for resistance, inductance in constants)

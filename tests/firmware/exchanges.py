@@ -8,8 +8,8 @@ from dataclasses import replace
 from twins import ARMING, CALM, CONFIGURE, NOMINAL, Twins
 
 from control.link import messages, wire
+from control.link.board_limits import CONFIGURATION_LIMITS
 from control.link.messages import Configure, Drive, Hello, Message, Stop
-from control.simulation.twin import CONFIGURATION_LIMITS
 
 FULL_COUNT = 1023
 

@@ -11,9 +11,9 @@ import pytest
 from twins import ARMING, CALM, CONFIGURE, NOMINAL, Twins
 
 from control.link import messages, wire
+from control.link.board_limits import CONFIGURATION_LIMITS
 from control.link.conversion import phase, phase_rate
 from control.link.messages import BoardCode, Flag, Hello, Refusal, ResetCause, Stop
-from control.simulation.twin import CONFIGURATION_LIMITS
 
 DEAD_SUPPLY = 0
 FULL = 1023
