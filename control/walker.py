@@ -59,9 +59,7 @@ class Stride:
 class Walker:
     """One walk of one controller on the rig."""
 
-    def __init__(
-        self, controller: Law, gait: Gait, length: float, pivot: Pivot, heading: float
-    ) -> None:
+    def __init__(self, controller: Law, gait: Gait, length: float, pivot: Pivot, heading: float) -> None:
         self.controller = controller
         self.gait = gait
         self.sweep = Sweep(gait.sweep, pivot, heading)

@@ -45,6 +45,8 @@ class BenchSettings:
     max_field: float
 
 
+STOPPED = "an emergency stop has come: nothing is driven any more"
+
 Watch = Callable[[Telemetry], None]
 """Told of each report of the board while a field is held."""
 
@@ -109,7 +111,7 @@ class Bench:
     def energise(self, drive: DriveCommand) -> None:
         """The arm edge: the field comes up from zero; raises `Refused`."""
         if self.parts.actuation.stopped_from_outside:
-            raise Refused("stopped; nothing is driven any more")
+            raise Refused(STOPPED)
         self._vitals.energised(self.camera.now())
         self._state = RigState.ARMED
         self._send(replace(drive, start_heading=drive.heading_goal))
@@ -118,7 +120,7 @@ class Bench:
         """Renew a command and wait a frame; at zero and `Refused` once anything forbids it."""
         frame = self.step()
         if self.parts.actuation.stopped_from_outside:
-            raise Refused("stopped")
+            raise Refused(STOPPED)
         blocking = self.blocking
         if blocking is not None:
             self.zero()
@@ -159,13 +161,17 @@ class Bench:
         self.energise(drive)
         settled_at = self.camera.now() + self.settling_time
         reports: list[Telemetry] = []
-        while wanted():
-            self.keep(drive)
-            if self.telemetry is None or self.camera.now() < settled_at:
-                continue
-            reports.append(self.telemetry)
-            if watch is not None:
-                watch(self.telemetry)
+        try:
+            while wanted():
+                self.keep(drive)
+                if self.telemetry is None or self.camera.now() < settled_at:
+                    continue
+                reports.append(self.telemetry)
+                if watch is not None:
+                    watch(self.telemetry)
+        except BaseException:
+            self.parts.actuation.stop(self.camera.now())
+            raise
         self.zero()
         return reports
 

@@ -32,15 +32,19 @@ class Cause(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """causes: one, or those that look alike.  message: for the operator, with what to do."""
+    """causes: one, or those that look alike.  message: for the operator, with what to do.
+
+    is_sure: the ends could be told apart; else a magnet that lies the other way round looks like one that does not.
+    """
 
     causes: tuple[Cause, ...]
     message: str
+    is_sure: bool = True
 
     @property
     def is_usable(self) -> bool:
         """The registration can take care of it."""
-        return set(self.causes) <= {Cause.NONE, Cause.TURNED, Cause.MAGNET_REVERSED}
+        return self.is_sure and set(self.causes) <= {Cause.NONE, Cause.TURNED, Cause.MAGNET_REVERSED}
 
 
 def diagnose(evidence: Evidence, picture_is_mirrored: bool | None = None) -> Verdict:
@@ -56,6 +60,7 @@ def diagnose(evidence: Evidence, picture_is_mirrored: bool | None = None) -> Ver
         verdict.causes,
         f"{verdict.message}. The robot spun out of sight when the field came up, so its ends may have "
         "changed names: put it down with end A as the rig file's heading_hint_deg says and try again",
+        is_sure=False,
     )
 
 

@@ -17,6 +17,8 @@ RESISTANCE_TOLERANCE = 0.15
 """A resistance may differ by this share from the rig file's: a winding 38 K warmer than when it was measured."""
 OPEN_SHARE = 0.1
 """A coil that carries less than this share of what is asked of it, by its sense, has an open lead or no sense."""
+UNMEASURED = "if an ohmmeter says so too, write it into the rig file"
+
 LEAST_AMMETER = 0.5
 """Smallest current worth comparing, A: 14 counts of the sense."""
 SENSE_TOLERANCE = 0.35
@@ -101,8 +103,10 @@ def _complaint(pair: CoilPair, resistance: float, pairs: Sequence[CoilPair]) -> 
         if other.axis != pair.axis and abs(resistance / other.resistance - 1.0) <= 0.5 * RESISTANCE_TOLERANCE:
             return f"{found}: that is what the {other.axis} coils have; are they exchanged?"
     if deviation < 0.0:
-        return f"{found}: turns are shorted, one coil of the pair is not in series, or the sense reads high"
-    return f"{found}: a hot winding, a bad contact, or a sense that reads low"
+        causes = "turns are shorted, one coil of the pair is not in series, or the sense reads high"
+    else:
+        causes = "a hot winding, a bad contact, or a sense that reads low"
+    return f"{found}: {causes}; {UNMEASURED}"
 
 
 @dataclass(frozen=True, slots=True)

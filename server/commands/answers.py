@@ -21,6 +21,20 @@ PIECE = 0.1
 MOST_BYTES = 4096
 
 
+def one_line() -> str:
+    """A line of standard input, "" at its end, and not a byte more: what follows is for others."""
+    if sys.stdin is None:
+        return ""
+    try:
+        source = sys.stdin.fileno()
+    except io.UnsupportedOperation:
+        return sys.stdin.readline()
+    line = b""
+    while not line.endswith(b"\n") and (letter := os.read(source, 1)):
+        line += letter
+    return line.decode(errors="replace")
+
+
 class Answers:
     """Lines from standard input."""
 
@@ -41,6 +55,8 @@ class Answers:
             console.print(f"{text.strip()!r} is no number; type one such as -1.25", highlight=False)
 
     def _line(self, is_held: Callable[[], bool]) -> str:
+        if sys.stdin is None:  # closed by who started the program
+            raise typer.Abort
         try:
             source = sys.stdin.fileno()
         except io.UnsupportedOperation:  # an input without a file has its lines at once

@@ -13,6 +13,7 @@ from control.calibration.field_gain import BadReadings
 from control.calibration.turning import Unclear
 from control.calibration.windings import BadAmmeter, SenseGains
 from control.coils import AXES, Axis
+from control.identification import TooLittle
 from control.link.conversion import LinkError
 from control.safety import Refused
 from server.assembly import FULL_FIELD, Machine
@@ -43,10 +44,14 @@ def explained() -> Iterator[None]:
 
     try:
         yield
-    except (Refused, LinkError, CameraError, OSError) as error:
+    except (Refused, LinkError, CameraError) as error:
         raise fail(str(error), REFUSED) from error
-    except (BadReadings, BadAmmeter, Unclear) as error:
+    except OSError as error:
+        raise fail(f"the rig cannot be opened: {error}", REFUSED) from error
+    except (BadReadings, BadAmmeter, Unclear, TooLittle) as error:
         raise fail(str(error), FAILED) from error
+    except ValueError as error:
+        raise fail(str(error), USAGE) from error
 
 
 @contextmanager

@@ -12,16 +12,12 @@ from pydantic import ValidationError
 
 from control.gait import Gait
 from control.gait_model import GaitModel
-from control.identification import TooLittle
-from control.link.conversion import LinkError
-from control.safety import Refused
+from server.commands.bench import explained
 from server.commands.calibrate_coils import coils
 from server.commands.calibrate_registration import polarity, registration
 from server.commands.calibrate_windings import sense, windings
 from server.commands.consent import YesOption, ask_for_consent
 from server.commands.outcome import (
-    FAILED,
-    REFUSED,
     USAGE,
     RigOption,
     console,
@@ -103,16 +99,11 @@ def _calibrate(rig_file: RigFile, gait: Gait, star: Star, *, consent: bool) -> d
     from server.assembly import build_machine
     from server.gait_calibration import calibrate_gait
     from server.run_list import new_id
-    from vision.cameras import CameraError
 
-    try:
+    with explained():
         machine = build_machine(rig_file, realtime=not rig_file.is_simulated)
         with console.status("walking the star"), coils_stop_first(machine.stop_coils):
             done = calibrate_gait(machine, new_id(), gait, star, consent=consent)
-    except (Refused, LinkError, CameraError) as error:
-        raise fail(str(error), REFUSED) from error
-    except TooLittle as error:
-        raise fail(str(error), FAILED) from error
     counts = done.run.ended.metrics
     return {
         "sweep_deg": round(math.degrees(gait.sweep), 6),

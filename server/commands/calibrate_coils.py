@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import math
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Annotated, Any
@@ -62,6 +63,8 @@ def coils(
     rig_file = read_rig_file(rig)
     if (readings is None) == (not (measure or simulate_readings)):
         raise fail("choose one: --measure, --simulate-readings, or --readings FILE", USAGE)
+    if not all(map(math.isfinite, point)):
+        raise fail(f"--point takes three lengths in mm, got {point}", USAGE)
     place = point[0] * MM, point[1] * MM, point[2] * MM
     with explained():
         if readings is not None:

@@ -9,6 +9,7 @@ from enum import StrEnum
 from typing import Annotated, Any
 
 import typer
+from pydantic import ValidationError
 
 from control.calibration.heading_offset import HeadingOffset, corrected, heading_offset, with_names_as
 from control.calibration.robot_turn import RobotTurn
@@ -20,8 +21,8 @@ from server.assembly import Machine, registration_of
 from server.commands.bench import JsonOption, SaveOption, explained, opened
 from server.commands.calibration_result import saved_or_shown
 from server.commands.consent import YesOption
-from server.commands.outcome import FAILED, RigOption, fail, read_rig_file
-from server.settings import MM, RigFile
+from server.commands.outcome import FAILED, USAGE, RigOption, fail, read_rig_file
+from server.settings import MM, RegistrationSection, RigFile, in_words
 
 
 class Picture(StrEnum):
@@ -82,14 +83,17 @@ def registration(
     The robot turns once round to the left and back. Takes half a minute.
     """
     given = read_rig_file(rig)
+    if at_centre_mark and (x_mm, y_mm) != (None, None):
+        raise fail("choose one: --at-centre-mark, or --x-mm and --y-mm", USAGE)
+    old = registration_of(given.coils.registration)
+    entered = registration_of(_entered(given.coils.registration, x_mm, y_mm))
     rig_file = at_the_centre(given)
     with opened(rig_file, realtime=not rig_file.is_simulated, yes=yes) as (machine, bench):
         turned = turn(machine, RobotTurn(bench, machine.tracker), picture, whole_circle=True)
     if turned.fine is None:
         raise fail(turned.verdict.message, FAILED)
-    old = registration_of(given.coils.registration)
     marked = turned.before.x, turned.before.y
-    new = registered(old, turned, marked if at_centre_mark else (_or(x_mm, old.x), _or(y_mm, old.y)))
+    new = registered(old, turned, marked if at_centre_mark else (entered.x, entered.y))
     changes = {"coils": {"registration": _section(new)}}
     words = [
         turned.verdict.message,
@@ -130,8 +134,14 @@ def at_the_centre(rig_file: RigFile) -> RigFile:
     return rig_file.with_simulation(start_x_mm=true.x_mm, start_y_mm=true.y_mm)
 
 
-def _or(given_mm: float | None, old: float) -> float:
-    return old if given_mm is None else given_mm * MM
+def _entered(old: RegistrationSection, x_mm: float | None, y_mm: float | None) -> RegistrationSection:
+    """`old` with the centre that was given; ends the command when the coils cannot stand there."""
+    centre = {"x_mm": x_mm, "y_mm": y_mm}
+    given = {name: value for name, value in centre.items() if value is not None}
+    try:
+        return RegistrationSection.model_validate({**old.model_dump(), **given})
+    except ValidationError as error:
+        raise fail(f"the coils' centre cannot be there:\n{in_words(error)}", USAGE) from error
 
 
 def _section(registration: Registration) -> dict[str, Any]:

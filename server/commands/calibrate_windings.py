@@ -4,9 +4,13 @@ from __future__ import annotations
 
 import math
 from statistics import mean
+from typing import Annotated
+
+import typer
 
 from control.calibration.bench import Bench
 from control.calibration.windings import (
+    LEAST_AMMETER,
     AmmeterReading,
     SteadyCoil,
     WindingCheck,
@@ -33,6 +37,12 @@ from server.commands.consent import YesOption
 from server.commands.held_coil import Held, HeldCoil, Instrument, each_way, held_each_way
 from server.commands.outcome import FAILED, USAGE, RigOption, fail, read_rig_file
 from server.settings import RigFile
+
+AmmeterCurrent = Annotated[
+    float,
+    typer.Option(min=2.4 * LEAST_AMMETER, max=12.0, help="Largest current, A; half of it is used as well."),
+]
+"""Its half, less a count or two of the sense, is worth comparing."""
 
 LOOK = 0.2
 """The board's reports are averaged over this time, s."""
@@ -86,7 +96,7 @@ def _winding_words(check: WindingCheck) -> str:
 
 def sense(
     coil: CoilOption = None,
-    current: CurrentOption = 2.0,
+    current: AmmeterCurrent = 2.0,
     simulate_readings: SimulateOption = False,
     save: SaveOption = False,
     yes: YesOption = False,

@@ -8,22 +8,30 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from server.commands.outcome import FAILED, console, fail, open_rig_store
-from server.rig_file import RigFileError
+from server.commands.outcome import FAILED, console, fail
+from server.data_folder import rig_path
+from server.rig_file import RigFileError, RigStore
 from server.settings import in_words
 
 
 def saved_or_shown(rig: Path | None, changes: dict[str, Any], save: bool) -> str:
-    """Write the changes into the rig file where that is asked for; a line that says where they are."""
-    if not save:
-        return "\n".join(["for the rig file:", *toml_lines(changes)])
+    """Write the changes into the rig file where that is asked for; a line that says where they are.
+
+    What cannot be written is shown all the same: nobody wants to measure it again.
+    """
+    lines = "\n".join(["for the rig file:", *toml_lines(changes)])
     try:
-        store = open_rig_store(rig)
+        store = RigStore(rig_path(rig))
+        store.plan(changes)
+        if not save:
+            return lines
         store.save(changes)
     except ValidationError as error:
-        raise fail(f"the result does not fit into the rig file:\n{in_words(error)}", FAILED) from error
+        raise fail(
+            f"the result does not fit into the rig file:\n{in_words(error)}\n{lines}", FAILED
+        ) from error
     except RigFileError as error:
-        raise fail(str(error), FAILED) from error
+        raise fail(f"{error}\n{lines}", FAILED) from error
     return f"saved in {store.path}; the file before is kept beside it"
 
 

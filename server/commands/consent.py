@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import sys
 from typing import Annotated
 
 import typer
 
+from server.commands.answers import one_line
 from server.commands.outcome import REFUSED, console, fail
 from server.settings import RigFile
 
@@ -25,6 +25,6 @@ def ask_for_consent(rig_file: RigFile, *, yes: bool) -> bool:
         return True
     console.print("This puts current through the coils of a real rig.", style="yellow")
     console.print("Hands, tools and cards are away from the coils, and somebody watches them? (y/N)", end=" ")
-    if sys.stdin.readline().strip().lower() in ("y", "yes"):
+    if one_line().strip().lower() in ("y", "yes"):
         return True
     raise fail("nothing was driven; agree when asked, or say --yes", REFUSED)

@@ -89,7 +89,7 @@ def flash(
     folder: FolderOption = None,
 ) -> None:
     """Build the firmware and write it into a real board, after asking."""
-    from control.firmware.flashing import FlashError, Flashing, find_avrdude
+    from control.firmware.flashing import ARDUINO, FlashError, Flashing, find_avrdude
     from control.firmware.flashing import flash as write
 
     made = _built(folder)
@@ -99,7 +99,10 @@ def flash(
     except FlashError as error:
         raise fail(str(error), FAILED) from error
     _confirm(made, flashing.port, command, yes)
-    _refuse_if_in_use(flashing.port)
+    if (
+        programmer == ARDUINO or Path(flashing.port).exists()
+    ):  # another programmer's may be no device, like `usb`
+        _refuse_if_in_use(flashing.port)
     try:
         with console.status(f"writing to {flashing.port}"):
             write(flashing)

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import math
 import threading
+from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
+from statistics import fmean
 from typing import Self
 
 import typer
@@ -13,10 +16,15 @@ from control.calibration.bench import Bench
 from control.calibration.windings import SenseGains, without_cut_off
 from control.coils import AXES, Axis
 from control.link.conversion import Telemetry
+from control.safety import Refused
 from server.commands.outcome import console
 
-SHOWN_CHANGE = 0.03
-"""A sensed current that changes by this share of what is wanted is shown again."""
+SHOWN_CHANGE = 0.1
+"""A sensed current that changes by so much is shown again, A: three counts of the ADC, more than its noise."""
+AVERAGED = 12
+"""Reports that the sensed current is the mean of: a fifth of a second."""
+PATIENCE = 300.0
+"""A coil is held for so long at most, s: whoever has walked away leaves no current behind."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,29 +42,36 @@ class Held:
 class HeldCoil:
     """`with HeldCoil(...) as held:` the coil carries its current while a person looks at an instrument.
 
-    A thread of its own renews the command meanwhile; however the block ends, the coil is at zero after it.
+    A thread of its own renews the command meanwhile, for `patience` (s) at most; however the block ends, the coil
+    is at zero after it.
     """
 
-    def __init__(self, bench: Bench, held: Held) -> None:
-        self.sensed = 0.0
-        """What the board's sense shows, A."""
+    def __init__(self, bench: Bench, held: Held, patience: float = PATIENCE) -> None:
         self._bench = bench
         self._held = held
+        self._patience = patience
+        self._give_up = math.inf
+        self._newest: deque[float] = deque(maxlen=AVERAGED)
         self._over = threading.Event()
         self._settled = threading.Event()
-        self._shown = 0.0
+        self._shown = math.inf
         self._error: BaseException | None = None
         self._thread = threading.Thread(target=self._hold, name="held coil")
 
     def __enter__(self) -> Self:
-        self._thread.start()
         try:
+            self._thread.start()
             self._settled.wait()
             self._require_held()
         except BaseException:
             self._end()
             raise
         return self
+
+    @property
+    def sensed(self) -> float:
+        """What the board's sense has shown lately, A."""
+        return fmean(tuple(self._newest) or (0.0,))
 
     @property
     def is_held(self) -> bool:
@@ -70,7 +85,8 @@ class HeldCoil:
 
     def _end(self) -> None:
         self._over.set()
-        self._thread.join()
+        if self._thread.ident is not None:
+            self._thread.join()
 
     def _require_held(self) -> None:
         if self._error is not None:
@@ -78,24 +94,30 @@ class HeldCoil:
 
     def _hold(self) -> None:
         try:
-            self._bench.hold_coil_while(
-                self._held.index, self._held.current, lambda: not self._over.is_set(), self._watch
-            )
+            self._give_up = self._bench.camera.now() + self._patience
+            self._bench.hold_coil_while(self._held.index, self._held.current, self._is_wanted, self._watch)
+            if not self._over.is_set():
+                raise Refused(f"no reading came within {self._patience:g} s")
         except Exception as error:  # noqa: BLE001 (raised again on the command's own thread)
             self._error = error
             console.print(f"the coils are at zero: {error}", style="red", markup=False, highlight=False)
         finally:
             self._settled.set()
 
+    def _is_wanted(self) -> bool:
+        return not self._over.is_set() and self._bench.camera.now() <= self._give_up
+
     def _watch(self, report: Telemetry) -> None:
-        self.sensed = report.measured_currents[self._held.index]
-        self._settled.set()
-        if abs(self.sensed - self._shown) > SHOWN_CHANGE * abs(self._held.current):
+        self._newest.append(report.measured_currents[self._held.index])
+        if len(self._newest) < AVERAGED:
+            return
+        if not abs(self.sensed - self._shown) <= SHOWN_CHANGE:
             self._shown = self.sensed
             console.print(
                 f"{self._held.coil} coils: {self._held.current:+.2f} A, sensed {self.sensed:+.2f} A",
                 highlight=False,
             )
+        self._settled.set()
 
 
 Instrument = Callable[[Held, HeldCoil], float]

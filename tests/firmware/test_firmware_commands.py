@@ -111,6 +111,13 @@ def test_another_programmer_may_erase_the_chip(tmp_path: Path) -> None:
     assert command[command.index("-c") + 1] == "usbasp"
 
 
+def test_flash_writes_with_a_programmer_that_has_no_serial_port(writer: Writer, tmp_path: Path) -> None:
+    arguments = ("--programmer", "usbasp", "--port", "usb", "--yes")
+    done = told("flash", *arguments, "--folder", str(tmp_path))
+    assert done.exit_code == 0, done.stderr
+    assert "-c usbasp -P usb -U flash:w:" in writer.calls[0]
+
+
 def test_flash_says_what_avrdude_said_when_it_failed(writer: Writer, port: str, tmp_path: Path) -> None:
     writer.answers(3)
     done = told("flash", "--port", port, "--folder", str(tmp_path), "--yes")
