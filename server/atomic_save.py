@@ -22,7 +22,7 @@ def previous_of(path: Path) -> Path:
 def keep_previous(path: Path, text: str) -> None:
     """Keep `text` as what the file was before; raises OSError."""
     path = path.resolve()
-    os.replace(_written(path, text.encode("utf-8")), previous_of(path))
+    _put(_written(path, text.encode("utf-8")), previous_of(path))
 
 
 class Staged:
@@ -40,8 +40,7 @@ class Staged:
     def commit(self) -> None:
         """Keep the old file as `.previous` and let the new one take its place; raises OSError."""
         if self._path.exists():
-            old = _written(self._path, self._path.read_bytes())
-            os.replace(old, previous_of(self._path))
+            _put(_written(self._path, self._path.read_bytes()), previous_of(self._path))
         os.replace(self._new, self._path)
         _sync_folder(self._path.parent)
 
@@ -68,6 +67,14 @@ def _written(path: Path, content: bytes) -> Path:
         new.unlink(missing_ok=True)
         raise
     return new
+
+
+def _put(new: Path, place: Path) -> None:
+    try:
+        os.replace(new, place)
+    except OSError:
+        new.unlink(missing_ok=True)
+        raise
 
 
 def _adopt_permissions(path: Path, handle: int) -> None:

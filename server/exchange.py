@@ -48,7 +48,12 @@ def rehearse(settings: RigFile) -> None:
 
 def without_devices(settings: RigFile) -> RigFile:
     """The same rig in memory only: nothing of this computer's is opened or written."""
-    whole = settings.as_simulated().model_dump(mode="json")
+    return without_traffic_log(settings.as_simulated())
+
+
+def without_traffic_log(settings: RigFile) -> RigFile:
+    """The same rig, of whose traffic nothing is kept: the log belongs to who drives it."""
+    whole = settings.model_dump(mode="json")
     whole["link"]["traffic_log"] = False
     return RigFile.model_validate(whole)
 

@@ -35,6 +35,14 @@ def load_rig_file(path: Path) -> RigFile:
     return settings_in(read(path), path)
 
 
+def is_there(path: Path) -> bool:
+    """Whether there is such a file; raises `RigFileError` for a path that may not or cannot be looked at."""
+    try:
+        return path.exists()
+    except OSError as error:
+        raise RigFileError(f"cannot read the rig file {path}: {error.strerror or error}") from error
+
+
 def read(path: Path) -> str:
     """The file's text; raises `RigFileError`."""
     try:
@@ -191,7 +199,7 @@ class RigStore:
     def __init__(self, path: Path) -> None:
         """Reads the file where there is one; raises `RigFileError`."""
         self.path = path
-        self.is_saved = path.exists()
+        self.is_saved = is_there(path)
         self.text = read(path) if self.is_saved else ""
         self.settings = settings_in(self.text, path)
 
@@ -239,10 +247,20 @@ class RigStore:
         self._take(plan)
 
     def take_disk(self, plan: Plan) -> None:
-        """From now on the file is what the plan says, as on the disk; what it was before is kept beside it."""
-        if self.is_saved and plan.text != self.text:
-            keep_previous(self.path, self.text)
+        """From now on the file is what the plan says, as on the disk; what it was before is kept beside it.
+
+        Raises `RigFileError` when that cannot be kept; the file counts as read all the same.
+        """
+        before, was_saved = self.text, self.is_saved
         self._take(plan)
+        try:
+            if was_saved and plan.text != before:
+                keep_previous(self.path, before)
+        except OSError as error:
+            raise RigFileError(
+                f"the rig file {self.path} was read and is in force, but what it was before cannot be kept: "
+                f"{error.strerror or error}"
+            ) from error
 
     def _take(self, plan: Plan) -> None:
         self.text, self.settings, self.is_saved = plan.text, plan.settings, True

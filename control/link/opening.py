@@ -49,12 +49,12 @@ def open_serial(port: str, baud: int) -> SerialLine:
         opened: Any = serial.serial_for_url(
             port, baudrate=baud, timeout=0, write_timeout=WRITE_TIMEOUT, exclusive=True
         )
-    except (*PORT_ERRORS, ValueError) as error:
-        raise _refusal(port, baud, error) from error
-    if isinstance(opened, serial.Serial):
+        if not isinstance(opened, serial.Serial):
+            return opened
         _shut_others_out(opened)
         return Device(opened, WRITE_TIMEOUT)
-    return opened
+    except (*PORT_ERRORS, ValueError) as error:
+        raise _refusal(port, baud, error) from error
 
 
 def trouble_of(error: BaseException) -> Trouble:
@@ -96,9 +96,13 @@ def _shut_others_out(opened: serial.Serial) -> None:
 
     A pseudo-terminal would keep the mark after its user has died, and nobody could come back to it.
     """
-    descriptor = opened.fileno()
-    if not is_pseudo_terminal(descriptor):
-        make_exclusive(descriptor)
+    try:
+        descriptor = opened.fileno()
+        if not is_pseudo_terminal(descriptor):
+            make_exclusive(descriptor)
+    except PORT_ERRORS:  # it is gone again
+        opened.close()
+        raise
 
 
 def is_pseudo_terminal(descriptor: int) -> bool:

@@ -82,6 +82,9 @@ class Link:
         """Zero, then close."""
         self.stop()
         self._wanted = False
+        with self._writing:
+            # who was writing just now may find the port gone, and the stop with it
+            self._send_stop()
         self._release()
         self._session.lose("closed")
 
@@ -183,14 +186,21 @@ class Link:
     def _send_due_stop(self) -> None:
         while self._stop_is_due and self._writing.acquire(blocking=False):
             try:
-                self._stop_is_due = False
-                if self._serial is not None:
-                    self._serial.write(self._session.stop())
-                    self._sent += 1
-            except PORT_ERRORS:
-                self._session.reason = f"{self.port} did not take the stop; the board's dead-man acts"
+                self._send_stop()
             finally:
                 self._writing.release()
+
+    def _send_stop(self) -> None:
+        """The stop that is due, if one is; the line is the caller's."""
+        if not self._stop_is_due:
+            return
+        self._stop_is_due = False
+        try:
+            if self._serial is not None:
+                self._serial.write(self._session.stop())
+                self._sent += 1
+        except PORT_ERRORS:
+            self._session.reason = f"{self.port} did not take the stop; the board's dead-man acts"
 
     def _write(self, compose: Callable[[], bytes]) -> None:
         """Numbers and sends a message, one at a time; a port that fails is let go of."""

@@ -12,6 +12,7 @@ import subprocess
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from importlib.metadata import version
 from pathlib import Path
 
 import platformdirs
@@ -21,11 +22,18 @@ from control.firmware.emulator.build import build_emulator, is_stale
 from control.simulation.bridges import Winding
 from control.simulation.emulator_port import EmulatorPort
 
-_ROOT = Path(__file__).parents[2]
-_CACHE = platformdirs.user_cache_path("pivotrig")
-FOLDER = (_ROOT / "build" if (_ROOT / "pyproject.toml").exists() else _CACHE) / "firmware"
-"""What has been built is kept in a checkout's own folder; an installed program has none."""
 
+def build_folder(root: Path) -> Path:
+    """Where what has been built is kept, for the program in `root`: in a checkout beside the sources.
+
+    An installed program has a cache, for each version one: its files may be older than what another version has built.
+    """
+    if (root / "pyproject.toml").exists():
+        return root / "build" / "firmware"
+    return platformdirs.user_cache_path("pivotrig", version=version("pivotrig")) / "firmware"
+
+
+FOLDER = build_folder(Path(__file__).parents[2])
 FIRMWARE = Path(__file__).parents[1] / "firmware"
 LINGER = 5.0
 """How long the child waits for a new client when the last one has gone, s."""

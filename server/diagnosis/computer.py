@@ -37,9 +37,15 @@ FIRMWARE_TOOLS = {
     "avr-g++": "gcc-avr",
     "avr-size": "binutils-avr",
     "avrdude": "avrdude",
+    "gcc": "gcc",
 }
 """Program and Debian package."""
-SIMAVR = Path("/usr/include/simavr/sim_avr.h")
+FIRMWARE_FILES = {
+    Path("/usr/lib/avr/include/avr/io.h"): "avr-libc",
+    Path("/usr/include/simavr/sim_avr.h"): "libsimavr-dev",
+    Path("/usr/include/libelf.h"): "libelf-dev",
+}
+"""File and Debian package."""
 
 
 def examine() -> Iterator[Check]:
@@ -159,15 +165,12 @@ def tick_times(settings: RigFile) -> tuple[float, float]:
 
 
 def firmware_tools() -> Check:
-    missing = {
-        program: package for program, package in FIRMWARE_TOOLS.items() if shutil.which(program) is None
-    }
-    if not SIMAVR.exists():
-        missing["simavr"] = "libsimavr-dev"
+    missing = {package for program, package in FIRMWARE_TOOLS.items() if shutil.which(program) is None}
+    missing |= {package for file, package in FIRMWARE_FILES.items() if not file.exists()}
     if missing:
         return info(
             "firmware tools",
-            f"not here: {', '.join(missing)}; only `pivotrig firmware` needs them",
-            f"apt install {' '.join(sorted(set(missing.values())))}",
+            f"not here: {', '.join(sorted(missing))}; only the firmware and the emulated board need them",
+            f"apt install {' '.join(sorted(missing))}",
         )
     return ok("firmware tools", "avr-gcc, avrdude and simavr are here")

@@ -13,6 +13,7 @@ from server.assembly import board_configuration, build_machine
 from server.diagnosis import board, camera
 from server.diagnosis.check import Check, problem
 from server.diagnosis.ports import is_device
+from server.exchange import without_traffic_log
 from server.settings import RigFile
 from vision.cameras import CameraError, open_camera
 
@@ -31,7 +32,7 @@ def examine(settings: RigFile) -> Iterator[Check]:
 def simulated(settings: RigFile) -> Iterator[Check]:
     """Camera and board share a world, whose time passes while the camera is read."""
     try:
-        machine = build_machine(settings, realtime=False)
+        machine = build_machine(without_traffic_log(settings), realtime=False)
     except (ValueError, OSError) as error:
         yield problem("simulation", str(error), "correct [simulation] in the rig file, or start its board")
         return

@@ -6,6 +6,7 @@ import os
 import signal
 import time
 from contextlib import closing
+from importlib.metadata import version
 from pathlib import Path
 
 import pytest
@@ -15,7 +16,14 @@ from control.firmware.build import BuildError
 from control.firmware.build import build as build_firmware
 from control.firmware.emulator.build import EmulatorMissing, build_emulator, is_stale
 from control.simulation.bridges import Winding
-from control.simulation.emulated import EmulatedBoard, Emulation, EmulationFailed, EmulatorProcess, prepare
+from control.simulation.emulated import (
+    EmulatedBoard,
+    Emulation,
+    EmulationFailed,
+    EmulatorProcess,
+    build_folder,
+    prepare,
+)
 from control.simulation.lockstep import RemoteBoard
 from tests.processes import started
 
@@ -124,6 +132,12 @@ def test_what_is_older_than_its_sources_is_built_anew(tmp_path: Path) -> None:
     assert not is_stale(product, [source])
     os.utime(product, (0.5, 0.5))
     assert is_stale(product, [source])
+
+
+def test_an_installed_program_runs_nothing_that_another_version_has_built(tmp_path: Path) -> None:
+    assert version("pivotrig") in build_folder(tmp_path).parts
+    (tmp_path / "pyproject.toml").touch()
+    assert build_folder(tmp_path) == tmp_path / "build" / "firmware"
 
 
 def test_a_missing_compiler_is_named_with_its_package(

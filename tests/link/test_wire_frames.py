@@ -229,3 +229,14 @@ def test_every_field_of_a_configuration_counts_in_its_hash() -> None:
 @given(u16, st.integers(0, 65535))
 def test_the_distance_of_sequence_numbers_goes_round(start: int, ahead: int) -> None:
     assert sequence_distance((start + ahead) % 65536, start) == ahead
+
+
+@pytest.mark.parametrize("begun", [b"\x05abc", b"x" * 200])
+def test_a_decoder_that_starts_anew_forgets_what_had_begun_and_keeps_its_counts(begun: bytes) -> None:
+    decoder = Decoder()
+    decoder.feed(b"\0\x02\x01\0" + begun)
+    counted = decoder.dropped
+    decoder.restart()
+    [packet] = decoder.feed(encode(DRIVE, 7, 9)[1:])
+    assert (packet.message, packet.sequence, packet.boot_id) == (DRIVE, 7, 9)
+    assert decoder.dropped == counted >= 1

@@ -1,10 +1,6 @@
 """`pivotrig calibrate coils`, `windings` and `sense` on the simulated rig: the board's bytes, the world's field."""
 
 import json
-import signal
-import subprocess
-import sys
-import time
 from pathlib import Path
 
 import pytest
@@ -13,6 +9,7 @@ from typer.testing import CliRunner
 from control.calibration.bench import Bench, BenchSettings
 from control.calibration.windings import check_windings
 from control.coils import AXES
+from control.link.messages import BoardCode
 from control.safety import Refused
 from control.simulation.board import TwinBoard
 from server.assembly import Machine, build_machine, coil_set
@@ -112,6 +109,11 @@ def test_readings_may_come_from_a_file(tmp_path):
         (["coils", "--simulate-readings", "--coil", "w"], 2, "there are no coils w"),
         (["coils", "--simulate-readings", "--current", "9"], 3, "its limit is 8 A"),
         (["coils", "--readings", "/nowhere.csv"], 1, "cannot read /nowhere.csv"),
+        (["coils", "--simulate-readings", "--point", "nan", "0", "0"], 2, "--point takes three lengths"),
+        (["sense", "--simulate-readings", "--current", "1"], 2, "than or equal to 1.2"),
+        (["registration", "--x-mm", "nan"], 2, "x_mm: Input should be a finite number"),
+        (["registration", "--y-mm", "201"], 2, "y_mm: Input should be less than or equal to 200"),
+        (["registration", "--at-centre-mark", "--x-mm", "1"], 2, "choose one"),
         (["coils", "--simulate-readings", "--point", "0", "0", "5000"], 1, "measure the x component near"),
     ],
 )
@@ -119,6 +121,31 @@ def test_what_cannot_be_measured_is_explained(tmp_path, arguments, status, compl
     answer = calibrate(*arguments, "--rig", rig_at(tmp_path, ""))
     assert answer.exit_code == status
     assert complaint in said(answer)
+
+
+@pytest.mark.parametrize("command", [["windings"], ["coils", "--simulate-readings"], ["polarity"], ["gait"]])
+@pytest.mark.parametrize(
+    ("text", "status", "complaint"),
+    [
+        ("[limits]\nworkspace_mm = 600\n", 2, "worst condition number"),
+        ('[simulation]\nboard = "tcp://127.0.0.1:1"\n', 3, "the rig cannot be opened"),
+    ],
+)
+def test_a_rig_that_cannot_be_opened_is_explained(tmp_path, command, text, status, complaint):
+    answer = calibrate(*command, "--rig", rig_at(tmp_path, text))
+    assert answer.exit_code == status, answer.exception
+    assert complaint in said(answer)
+
+
+def test_a_result_that_cannot_be_saved_is_not_lost(tmp_path):
+    rig = rig_at(tmp_path, "# as it was\n")
+    (tmp_path / "rig.toml.previous" / "in the way").mkdir(parents=True)
+    answer = calibrate("windings", "--coil", "x", "--rig", rig, "--save")
+    assert answer.exit_code == 1
+    assert "cannot be saved" in said(answer)
+    assert "[coils.x] resistance_ohm = 2.49" in said(answer)
+    assert Path(rig).read_text() == "# as it was\n"
+    assert [path.name for path in tmp_path.iterdir() if path.name.startswith(".")] == []
 
 
 def test_a_file_that_holds_no_readings_is_explained(tmp_path):
@@ -248,25 +275,43 @@ def test_a_supply_that_goes_off_ends_the_hold_and_says_so():
         assert on.board.drive_is_zero
 
 
+def left_alone(on: OnTheBench) -> None:
+    with HeldCoil(on.bench, Held("z", 2.0), patience=1.0) as held:
+        assert abs(held.sensed) > 1.9
+        on_its_own(held)
+        assert on.board.duty == (0, 0, 0)
+
+
+def test_a_coil_that_nobody_comes_back_to_is_let_go_of():
+    with OnTheBench() as on, pytest.raises(Refused, match="no reading came within 1 s"):
+        left_alone(on)
+
+
+class Pulled(Exception):
+    """The camera's cable."""
+
+
+def test_a_camera_that_fails_while_a_coil_is_held_leaves_it_at_zero_at_once():
+    def pulled(_: float) -> None:
+        raise Pulled
+
+    with OnTheBench() as on:
+        step = on.bench.step
+
+        def step_until_driven():
+            if abs(on.board.currents[0]) > 1.0:
+                on.bench.camera.read = pulled  # type: ignore[method-assign]
+            return step()
+
+        on.bench.step = step_until_driven  # type: ignore[method-assign]
+        with pytest.raises(Pulled):
+            on.bench.hold_coil(0, 2.0, 0.1)
+        on.board.advance(3)
+        assert on.board.drive_is_zero
+        assert on.board.state == BoardCode.STOPPED
+
+
 def on_its_own(held: HeldCoil) -> None:
     """Wait until the thread that holds the coil has given up."""
     held._thread.join(timeout=20.0)
     assert not held._thread.is_alive()
-
-
-@pytest.mark.exclusive
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_a_signal_at_the_prompt_zeroes_the_coils_and_ends_the_command(tmp_path, number):
-    rig = rig_at(tmp_path, "")
-    command = [sys.executable, "-m", "server", "calibrate", "coils", "--measure", "--coil", "x", "--rig", rig]
-    with subprocess.Popen(command, stdin=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
-        assert process.stderr is not None
-        said_so_far = ""
-        while "field along x" not in said_so_far:
-            letter = process.stderr.read(1)
-            assert letter, f"the command ended before it asked: {said_so_far}"
-            said_so_far += letter
-        process.send_signal(number)
-        began = time.monotonic()
-        assert process.wait(timeout=10.0) != 0
-        assert time.monotonic() - began < 5.0
