@@ -14,6 +14,7 @@ from enum import IntEnum
 from control.coil_heat import OFF_AT, WARN_AT
 from control.coils import AXES
 from control.current_check import Mismatch
+from control.link.conversion import BoardState
 from control.model import Pose, Tracking
 from control.response import AWAY
 from control.safety import Limits
@@ -43,6 +44,11 @@ LINE_POOR = 0.01
 """Share of broken frames on the serial line above which it is worth a warning (faults.md)."""
 LINE_BAD = 0.10
 """Share of broken frames above which the line is not to be trusted with current (faults.md)."""
+LINE_SLOW = 0.100
+"""A command and its echo that take longer are worth a warning, s: three times the usual two ticks (33 ms), and more
+than a line takes that loses a third of its messages (67 ms)."""
+LINE_TOO_SLOW = 0.200
+"""Beyond this a stop would come no sooner than the board's own dead-man, s."""
 STUCK_SHOWN = 5.0
 """A sweep that the robot did not make is shown for this long, s: several sweeps at walking pace."""
 
@@ -77,6 +83,7 @@ class Health:
     turned_away: how far the body has turned against the field, rad.  stuck_age: since a sweep was given up.
     link_ready: greeted and configured.  link_reason: why it is not.  link_incident: how the conversation with
     the board broke since the arm edge, "" if it did not.  bad_share: broken share of the line's frames, 0..1.
+    line_lateness: how long a command and its echo certainly take.
     not_driving: how long the board has not been driving although it should.
     current_mismatch: how long sensed and commanded currents have disagreed.  mismatch: in what way, at last.
     coil_heat: share of the heat that each coil may have.  is_too_hot: they must cool down first.
@@ -98,6 +105,7 @@ class Health:
     link_reason: str
     link_incident: str
     bad_share: float
+    line_lateness: float
     telemetry_age: float
     board_faults: tuple[str, ...]
     board_state: str
@@ -116,8 +124,8 @@ def assess(health: Health, limits: Limits) -> tuple[Finding, ...]:
         *_camera(health),
         *_robot(health, limits),
         *_board(health),
-        *_response(health),  # after the board: a current that is missing explains a robot that turns wrongly
         *_line(health),
+        *_response(health),  # after board and line: what they lack explains a robot that turns wrongly
         *_heat(health),
     ]
     return tuple(sorted(found, key=lambda finding: -finding.severity))
@@ -190,6 +198,9 @@ def _board(health: Health) -> Iterator[Finding]:
         yield Finding(Severity.DISARM, "supply", "the supply of the coils is low or off; switch it on")
     elif health.board_faults:
         yield Finding(Severity.LATCH, "board", f"the board reports: {', '.join(health.board_faults)}")
+    elif not health.not_driving <= NOT_DRIVING and health.board_state == BoardState.EXPIRED:
+        message = "no fresh command reached the board in time: it has switched the coils off by itself"
+        yield Finding(Severity.HOLD, "expired", message)
     elif not health.not_driving <= NOT_DRIVING:
         yield Finding(Severity.DISARM, "board", f"the board does not drive: it is {health.board_state}")
     elif not health.current_mismatch <= CURRENT_MISMATCH:
@@ -197,11 +208,17 @@ def _board(health: Health) -> Iterator[Finding]:
 
 
 def _line(health: Health) -> Iterator[Finding]:
-    if health.bad_share <= LINE_POOR:
-        return
-    severity = Severity.WARN if health.bad_share <= LINE_BAD else Severity.DISARM
-    message = f"{health.bad_share:.0%} of the messages on the serial line are broken: check cable and ground"
-    yield Finding(severity, "line", message)
+    if not health.bad_share <= LINE_POOR:
+        severity = Severity.WARN if health.bad_share <= LINE_BAD else Severity.DISARM
+        message = f"{health.bad_share:.0%} of the messages on the serial line are broken: check cable and ground"
+        yield Finding(severity, "line", message)
+    if not health.line_lateness <= LINE_SLOW:
+        severity = Severity.WARN if health.line_lateness <= LINE_TOO_SLOW else Severity.DISARM
+        message = (
+            "the serial line is slow, or loses messages: a command and its echo take "
+            f"{health.line_lateness * 1e3:.0f} ms; check its adapter, and what else uses its USB hub"
+        )
+        yield Finding(severity, "slow", message)
 
 
 def _heat(health: Health) -> Iterator[Finding]:

@@ -146,6 +146,7 @@ class ControlLoop:
         state = after(self._state, Event.RESET)
         if self._vitals.telemetry is not None and self._vitals.telemetry.faults:
             self._parts.link.greet()
+            self._vitals.forget_report()
         self._parts.actuation.allow()
         self._latched = None
         self._enter(state, "reset; arm to go on", "info")
@@ -235,7 +236,7 @@ class ControlLoop:
     def _look(self, frame: Frame, now: float) -> None:
         if self._vitals.frame_came(frame, now):
             self._parts.perception.look(frame)
-            self._vitals.saw(self._state)
+            self._vitals.saw(self._state, now)
 
     def _judge(self, gap: float, now: float) -> None:
         if self._walk is not None:
@@ -299,6 +300,7 @@ class ControlLoop:
         try:
             self._parts.actuation.start(self._now, pose, self._standing_on(), self._gait)
         except LinkError as error:
+            self._stop_coils()
             raise Refused(str(error)) from error
 
     def _standing_on(self) -> Pivot:

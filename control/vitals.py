@@ -19,6 +19,9 @@ from control.workspace_guard import WorkspaceGuard
 LONGEST_BLIND_DRIVE = 0.5
 """A board that hears nothing drives on for this long at most, s: the longest dead-man that it takes."""
 
+REPORT_FRESH = 0.050
+"""So long after a report the board's field is known, s: five reports, or three frames of a loop that loses some."""
+
 
 class Vitals:
     """Listens to the board and asks the arbiter; keeps since when each thing has been wrong."""
@@ -47,12 +50,22 @@ class Vitals:
         self._frame_at = now
         return True
 
-    def saw(self, state: RigState) -> None:
+    def saw(self, state: RigState, now: float) -> None:
         """A picture has just been looked at: hold the body's turn against a field that is as commanded."""
         observation = self._parts.perception.observation
         seen = observation.measurement if observation is not None else None
-        if state in ENERGISED and seen is not None and self._mismatch is AGREED:
+        if state in ENERGISED and seen is not None and self._field_is_known(now):
             self._response.see(self._parts.field.heading_at(seen.captured_at), seen.pose.heading)
+
+    def _field_is_known(self, now: float) -> bool:
+        """Whether the board has just said that it drives, and with the currents that it was asked for."""
+        telemetry = self.telemetry
+        return (
+            telemetry is not None
+            and telemetry.state is BoardState.DRIVING
+            and now - telemetry.received_at <= REPORT_FRESH
+            and self._mismatch is AGREED
+        )
 
     def walked(self, stuck_sweeps: int, now: float) -> None:
         """stuck_sweeps: how many sweeps of this walk were given up so far."""
@@ -83,6 +96,10 @@ class Vitals:
         if telemetry.state is BoardState.DRIVING or state not in ENERGISED:
             self._driving_at = now
         self._compare_currents(telemetry, now)
+
+    def forget_report(self) -> None:
+        """The board is greeted anew: what it said before is no news of it."""
+        self.telemetry = None
 
     def judge(self, gap: float, now: float, state: RigState, pose: Pose | None) -> tuple[Finding, ...]:
         """Everything that is wrong now, most severe first. gap: since the last tick, s.
@@ -171,6 +188,7 @@ class Vitals:
             link_reason=link.reason,
             link_incident=link.incident if is_engaged and telemetry is not None else "",
             bad_share=link.bad_share,
+            line_lateness=link.lateness if is_energised else 0.0,
             telemetry_age=now - telemetry.received_at if telemetry is not None else math.inf,
             board_faults=telemetry.faults if telemetry is not None else (),
             board_state=telemetry.state.value if telemetry is not None else "",

@@ -107,7 +107,9 @@ def same_device(one: str, other: str) -> bool:
 
 
 class TheOneBoard:
-    """`auto`: the one board that is plugged in; of several the one that was used before, by its serial number."""
+    """`auto`: the one board that is plugged in; once one with a serial number has been used, that one and no other,
+    since another one may have another rig's coils.
+    """
 
     def __init__(self, ports: Callable[[], Sequence[UsbPort]] = usb_ports) -> None:
         self._ports = ports
@@ -123,6 +125,8 @@ class TheOneBoard:
         known = [board for board in boards if self._is_used_before(board)]
         if len(known) == 1:
             return known[0]
+        if boards and self._used is not None and self._used.serial_number:
+            raise PortError(_another(self._used, boards), Trouble.MISSING)
         if len(boards) != 1:
             raise PortError(_not_one(ports, boards), Trouble.MISSING)
         return boards[0]
@@ -132,6 +136,14 @@ class TheOneBoard:
         if used is None or not used.serial_number:
             return False
         return (board.usb_id, board.serial_number) == (used.usb_id, used.serial_number)
+
+
+def _another(used: UsbPort, boards: Sequence[UsbPort]) -> str:
+    listed = ", ".join(board.in_words for board in boards)
+    return (
+        f"the board that was used, {used.in_words}, is not connected any more, and {listed} is not taken for it. "
+        "Plug it in again; to use another one, reload the rig file or start anew"
+    )
 
 
 def _not_one(ports: Sequence[UsbPort], boards: Sequence[UsbPort]) -> str:

@@ -246,16 +246,22 @@ class Link:
         return self._session.bad_share(self._clock())
 
     @property
+    def lateness(self) -> float:
+        """How long a command and its echo certainly take since the arm edge, s."""
+        return self._session.echoes.lateness
+
+    @property
     def status(self) -> LinkStatus:
         session = self._session
         telemetry = session.telemetry
-        median, p99 = session.round_trips.figures or (None, None)
+        round_trips = session.echoes.round_trips
+        median, p99 = round_trips.figures or (None, None)
         return LinkStatus(
             state=session.state.value,
             port=self.port,
             firmware=session.firmware,
             boot_id=session.boot_id,
-            round_trip=session.round_trips.newest,
+            round_trip=round_trips.newest,
             round_trip_median=median,
             round_trip_p99=p99,
             bad_frames=session.broken_frames,

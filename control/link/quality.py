@@ -86,6 +86,50 @@ class RoundTrips:
         return self._figures
 
 
+class Echoes:
+    """Times one command after the other on its way to the board and back, from the arm edge on."""
+
+    def __init__(self) -> None:
+        self.round_trips = RoundTrips()
+        self._waiting: tuple[int, float] | None = None
+        self._certain = 0.0
+        self._heard_at = -math.inf
+
+    def begin(self) -> None:
+        """The next command is the first one that counts."""
+        self._waiting = None
+        self._certain = 0.0
+
+    def sent(self, sequence: int, now: float) -> None:
+        if self._waiting is None:
+            self._waiting = sequence, now
+
+    def heard(self, echoed: int, now: float) -> None:
+        """A report names the newest command that the board had heard."""
+        if self._waiting is not None:
+            self._compare(echoed, *self._waiting, now)
+        self._heard_at = now
+
+    def _compare(self, echoed: int, sequence: int, sent_at: float, now: float) -> None:
+        if wire.sequence_distance(echoed, sequence) < wire.SEQUENCE_WINDOW:
+            self.round_trips.add(now - sent_at)
+            self._certain = max(0.0, self._heard_at - sent_at)
+            self._waiting = None
+
+    def unheard(self, now: float) -> float:
+        """How long a command has been waiting for its echo, s; 0 when none does."""
+        return 0.0 if self._waiting is None else now - self._waiting[1]
+
+    @property
+    def lateness(self) -> float:
+        """How long a command and its echo certainly take, s.
+
+        An echo counts only up to the last report before it: if nobody looked, or the board is silent, the line is
+        not slow.
+        """
+        return max(self._certain, self.unheard(self._heard_at))
+
+
 class BoardCounts:
     """The board's own 16-bit counts of what it heard, as steps from report to report."""
 

@@ -10,7 +10,7 @@ from enum import StrEnum
 
 from control.link import conversion, messages, reasons, wire
 from control.link.conversion import Configuration, DriveCommand, LinkError, Telemetry
-from control.link.quality import BoardCounts, BrokenShare, RoundTrips, broken_by_kind
+from control.link.quality import BoardCounts, BrokenShare, Echoes, broken_by_kind
 
 RESEND = 0.3
 """Time to wait for an answer to a hello or a configuration, s: well above a round trip."""
@@ -58,7 +58,7 @@ class Session:
         self.boot_id = 0
         self.received = 0
         self.resends = 0
-        self.round_trips = RoundTrips()
+        self.echoes = Echoes()
         self.telemetry: Telemetry | None = None
         self._configure = conversion.configure_message(configuration)
         self._hash = wire.configuration_hash(self._configure)
@@ -69,7 +69,6 @@ class Session:
         self._has_heard_noise = False
         self._asked_at = -1e9
         self._heard_at = -1e9
-        self._probe: tuple[int, float] | None = None
         self._reported: int | None = None
         self._forget_quality()
 
@@ -96,7 +95,7 @@ class Session:
     def _forget(self) -> None:
         self._decoder.restart()
         self.telemetry = None
-        self._probe = None
+        self.echoes.begin()
         self._reported = None
         self._has_heard_noise = False
         self._await_answer_to_none()
@@ -208,7 +207,7 @@ class Session:
             return None
         self._heard_at = now
         self._outgoing.add(now, *self._board_counts.step(report))
-        self._time_echo(report.last_sequence, now)
+        self.echoes.heard(report.last_sequence, now)
         return conversion.telemetry_from(packet, report, now)
 
     def _is_newer(self, sequence: int) -> bool:
@@ -218,14 +217,6 @@ class Session:
             return False
         self._reported = sequence
         return True
-
-    def _time_echo(self, echoed: int, now: float) -> None:
-        if self._probe is None:
-            return
-        sequence, sent_at = self._probe
-        if wire.sequence_distance(echoed, sequence) < wire.SEQUENCE_WINDOW:
-            self.round_trips.add(now - sent_at)
-            self._probe = None
 
     def _check_attention(self, now: float) -> None:
         if now - self._heard_at > SILENCE:
@@ -272,13 +263,12 @@ class Session:
         frame = self._numbered(conversion.drive_message(command, self.configuration))
         if command.start_heading is not None:
             self.incident = ""
-            self._probe = None
-        if self._probe is None:
-            self._probe = self._sequence, now
+            self.echoes.begin()
+        self.echoes.sent(self._sequence, now)
         return frame
 
     def _refuse_if_late(self, now: float) -> None:
-        late = 0.0 if self._probe is None else now - self._probe[1]
+        late = self.echoes.unheard(now)
         if not late <= LATE:
             raise LinkError(reasons.hears_late(late, LATE))
 

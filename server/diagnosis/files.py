@@ -39,7 +39,7 @@ def rig_file(path: Path, is_named: bool) -> tuple[RigFile | None, Check]:
 
 def _way_back(path: Path) -> str:
     previous = previous_of(path)
-    if previous.exists():
+    if os.path.exists(previous):  # which is never in doubt, unlike Path.exists
         return f"correct it, or copy {previous} over it: the file as it was before"
     return "correct it; rig.example.toml shows every value with its default"
 

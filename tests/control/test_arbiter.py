@@ -17,6 +17,8 @@ from control.arbiter import (
     FROZEN_FRAMES,
     LINE_BAD,
     LINE_POOR,
+    LINE_SLOW,
+    LINE_TOO_SLOW,
     LOOP_STALL,
     NOT_DRIVING,
     PREDICT_FOR,
@@ -52,6 +54,7 @@ GOOD = Health(
     link_reason="",
     link_incident="",
     bad_share=0.0,
+    line_lateness=0.017,
     telemetry_age=0.01,
     board_faults=(),
     board_state="driving",
@@ -79,6 +82,7 @@ def test_the_thresholds_are_those_that_were_derived_or_measured() -> None:
     assert in_milliseconds == (0.100, 0.150, 0.150, 0.300, 0.200, 1.0)
     assert (CURRENT_MISMATCH, NOT_DRIVING, STUCK_SHOWN) == (0.100, 0.150, 5.0)
     assert (LINE_POOR, LINE_BAD, FROZEN_FRAMES) == (0.01, 0.10, 3)
+    assert (LINE_SLOW, LINE_TOO_SLOW) == (0.100, 0.200)
     assert (WARN_AT, OFF_AT) == (0.8, 1.0)
     assert math.radians(4.0) == AWAY
 
@@ -103,6 +107,7 @@ def test_a_healthy_rig_has_no_findings() -> None:
         ("telemetry_age", TELEMETRY_STALE, DISARM, "telemetry"),
         ("not_driving", NOT_DRIVING, DISARM, "board"),
         ("bad_share", LINE_POOR, WARN, "line"),
+        ("line_lateness", LINE_SLOW, WARN, "slow"),
     ],
 )
 def test_each_limit_holds_up_to_its_value_and_no_further(name, limit, severity, code) -> None:
@@ -123,6 +128,7 @@ def test_each_limit_holds_up_to_its_value_and_no_further(name, limit, severity, 
         ("telemetry_age", DISARM, "telemetry"),
         ("not_driving", DISARM, "board"),
         ("bad_share", DISARM, "line"),
+        ("line_lateness", DISARM, "slow"),
     ],
 )
 def test_what_is_no_number_is_on_the_safe_side(name, severity, code, value) -> None:
@@ -235,7 +241,8 @@ def test_a_robot_that_does_not_make_its_sweeps_is_shown_for_a_while() -> None:
         ({"board_faults": ("supply_low",)}, DISARM, "supply", "switch it on"),
         ({"board_faults": ("over_current",)}, LATCH, "board", "the board reports: over_current"),
         ({"board_faults": ("supply_low", "driver_fault")}, LATCH, "board", "supply_low, driver_fault"),
-        ({"not_driving": 0.2, "board_state": "expired"}, DISARM, "board", "does not drive: it is expired"),
+        ({"not_driving": 0.2, "board_state": "expired"}, HOLD, "expired", "no fresh command reached the board"),
+        ({"not_driving": 0.2, "board_state": "stopped"}, DISARM, "board", "does not drive: it is stopped"),
     ],
 )
 def test_each_thing_about_the_board_has_its_consequence(changes, severity, code, words) -> None:
@@ -254,6 +261,16 @@ def test_a_poor_line_warns_and_a_bad_one_disarms() -> None:
     assert after(bad_share=LINE_BAD) == [(WARN, "line")]
     assert after(bad_share=just_beyond(LINE_BAD)) == [(DISARM, "line")]
     assert message(bad_share=0.25).startswith("25% of the messages")
+
+
+def test_a_slow_line_warns_and_one_that_is_slower_than_the_dead_man_disarms() -> None:
+    assert after(line_lateness=LINE_TOO_SLOW) == [(WARN, "slow")]
+    assert after(line_lateness=just_beyond(LINE_TOO_SLOW)) == [(DISARM, "slow")]
+    assert "a command and its echo take 233 ms" in message(line_lateness=0.233)
+
+
+def test_a_line_that_is_both_poor_and_slow_says_both() -> None:
+    assert after(line_lateness=0.15, bad_share=0.2) == [(DISARM, "line"), (WARN, "slow")]
 
 
 # The heat ----------------------------------------------------------------------------------------

@@ -155,7 +155,10 @@ def test_a_robot_that_spun_out_of_sight_is_to_be_put_down_again():
     before = Pose(0.02, 0.02, 1.0)
     found = gather(before, probe(robot, 1.0), LENGTH)
     assert not found.names_are_sure
-    assert "put it down with end A" in diagnose(found).message
+    verdict = diagnose(found)
+    assert "put it down with end A" in verdict.message
+    assert verdict.causes == (Cause.NONE,)
+    assert not verdict.is_usable, "nobody knows which way round the magnet lies"
 
 
 def stuck(stations):

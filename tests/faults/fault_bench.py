@@ -60,7 +60,7 @@ class RecordedBoard:
 class Reaction:
     """What a rig did about a fault. Times on the board's own clock, ms after the fault; None: not at all.
 
-    noticed: the first line of the log that a finding wrote.  zero: the drive.  after: the state it led to.
+    noticed: the line of the log that says why it stops.  zero: the drive.  after: the state it led to.
     """
 
     fault: int
@@ -193,7 +193,7 @@ class FaultBench:
 
 
 def _is_a_finding(line: Announcement) -> bool:
-    return line.severity != "info" and line.code != "injected"
+    return line.severity == "error"
 
 
 def _is_fit(snapshot: Snapshot) -> bool:

@@ -43,6 +43,7 @@ def test_overtaken_messages_are_not_obeyed() -> None:
     keeps_its_promise("line_reorders")
 
 
-def test_a_slow_line_holds_the_robot() -> None:
-    """When the line delays every message by a tenth of a second, the rig holds."""
+def test_a_slow_line_disarms_and_is_named() -> None:
+    """When the line delays every message by a tenth of a second, a stop would come late: the rig disarms, and
+    says that it is the line."""
     keeps_its_promise("line_slow")

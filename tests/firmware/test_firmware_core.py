@@ -388,3 +388,41 @@ def test_a_reset_begins_anew_with_the_next_boot_id(driving: Twins) -> None:
         after.run(30)
         assert after.twin.state == BoardCode.BOOTED
         assert not after.reports
+
+
+@pytest.mark.parametrize(("nominal", "is_low"), [(28645, False), (28646, False), (28647, True)])
+def test_a_supply_of_three_quarters_is_not_yet_low(twins: Twins, nominal: int, is_low: bool) -> None:
+    """400 counts are 21 484 mV, three quarters of 28 646 mV."""
+    twins.say(Hello())
+    twins.say(replace(CONFIGURE, supply=nominal))
+    for _ in range(20):
+        twins.tick((0, 0, 0), 400)
+    assert bool(twins.reports[-1].flags & Flag.SUPPLY_LOW) is is_low
+
+
+def test_another_nominal_supply_counts_although_the_sensed_one_stays(driving: Twins) -> None:
+    """A weak supply is believed down to half of the nominal one."""
+    for nominal in (12000, 48000, 20000):
+        driving.say(Stop())
+        driving.say(replace(CONFIGURE, supply=nominal))
+        driving.say(ARMING)
+        for _ in range(100):
+            driving.tick((0, 0, 0), 180)
+        assert driving.twin.state == BoardCode.DRIVING
+
+
+@pytest.mark.parametrize("banners", range(19))
+@pytest.mark.parametrize("taken", range(0, 16, 3))
+def test_a_message_that_finds_no_room_is_dropped_whole(twins: Twins, banners: int, taken: int) -> None:
+    """Every fill of the buffer that banners, reports and a slow line can make."""
+    twins.say(Hello())
+    for number in range(banners):
+        greeting = wire.encode(Hello(), number + 2, twins.boot_id)
+        twins.twin.receive(greeting)
+        twins.core.receive(greeting)
+    twins.drain(taken)
+    for _ in range(60):
+        twins.tick((0, 0, 0), most=0)
+    twins.drain()
+    twins.run(20)
+    assert twins.reports

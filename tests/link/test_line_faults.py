@@ -327,6 +327,9 @@ def test_an_unplugged_line_cannot_be_opened(bench: Bench) -> None:
 
 # ---- for every interleaving
 
+LONGEST_DELAY = 500
+"""Milliseconds that a command may still be on its way."""
+
 actions = st.sampled_from(
     (
         *("tick", "tick", "tick", "ticks", "drive", "drive", "edge", "stop", "greet"),
@@ -355,7 +358,7 @@ def test_whatever_happens_to_the_line_poll_never_raises_and_only_the_operator_ar
             assert [drive.flags for drive in drives] == [ARM if action == "edge" else 0] * len(drives)
         bench.faults.clear()
         bench.until_ready()
-        bench.rig.tick(LIFE // TICK + 2)
+        bench.rig.tick((LONGEST_DELAY + LIFE) // TICK + 2)
         assert bench.board.drive_is_zero
 
 
@@ -370,7 +373,7 @@ def act(bench: Bench, action: str, share: float) -> None:
     elif action in ("unplugged", "jammed", "silent"):
         setattr(faults, action, not getattr(faults, action))
     elif action == "delay":
-        faults.delay = 0.5 * share
+        faults.delay = 1e-3 * LONGEST_DELAY * share
     elif action == "noise in":
         bench.board._outbox += bytes(range(round(200 * share)))
     elif action == "noise out":

@@ -212,6 +212,27 @@ def test_a_stop_during_a_write_is_sent_by_the_writer(bench: Rig) -> None:
     assert bench.board.state == BoardCode.STOPPED
 
 
+def test_closing_sends_the_stop_although_somebody_is_writing(bench: Rig) -> None:
+    """The port is closed as soon as the writer lets go of it; the stop must not be left to the writer."""
+    bench.driving()
+    bench.tick()
+    original = bench.board.write
+    closing = threading.Thread(target=bench.link.close)
+
+    def write_while_closing(data: bytes) -> None:
+        bench.board.write = original
+        closing.start()
+        closing.join(0.1)
+        original(data)
+        bench.link._send_due_stop = lambda: None  # this writer is too slow to send the stop itself
+
+    bench.board.write = write_while_closing
+    bench.link.drive(COMMAND)
+    closing.join(5.0)
+    bench.board.advance(3)
+    assert bench.board.state == BoardCode.STOPPED
+
+
 def test_a_port_in_use_is_refused_by_name(bench: Rig) -> None:
     bench.ready()
     other = Link(bench.link.port, 500000, CONFIGURATION, lambda: 0.0)

@@ -19,7 +19,7 @@ from pathlib import Path
 import pytest
 from link_bench import CONFIGURATION, Rig, board, rig, until
 
-from control.link import wire
+from control.link import opening, wire
 from control.link.conversion import LinkError
 from control.link.discovery import AUTO, TheOneBoard, UsbPort, find_boards, same_device, usb_ports
 from control.link.messages import Banner, Hello
@@ -99,6 +99,21 @@ def test_auto_finds_the_board_that_it_used_under_another_name() -> None:
     locate()
     there[:] = [CLONE, UsbPort("/dev/ttyACM1", UNO.usb_id, UNO.serial_number)]
     assert locate() == "/dev/ttyACM1"
+
+
+def test_auto_does_not_take_another_board_for_the_one_that_it_used() -> None:
+    """Its coils may be another rig's, and opening its port would reset it."""
+    there = [UNO]
+    locate = TheOneBoard(lambda: there)
+    locate()
+    for others in ([CLONE], [UsbPort("/dev/ttyACM0", UNO.usb_id, "another")], [CLONE, CLONE]):
+        there[:] = others
+        with pytest.raises(
+            PortError, match=r"by-id/usb-Arduino_7583-if00.* is not connected any more.*reload"
+        ):
+            locate()
+    there[:] = [CLONE, UNO]
+    assert locate() == UNO.device
 
 
 def test_auto_does_not_guess_among_boards_without_a_serial_number() -> None:
@@ -316,3 +331,15 @@ def test_only_pseudo_terminals_count_as_such() -> None:
     os.close(ours)
     with open("/dev/null") as null:
         assert not is_pseudo_terminal(null.fileno())
+
+
+def test_a_port_that_goes_while_it_is_opened_is_a_failed_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A plug with a loose contact: the terminal opens, and hangs up before it is ours alone."""
+    theirs, ours = pty.openpty()
+    tty.setraw(ours)
+    monkeypatch.setattr(opening, "is_pseudo_terminal", lambda _: os.close(theirs))
+    files = len(os.listdir("/proc/self/fd"))
+    with pytest.raises(PortError, match="Input/output error"):
+        open_serial(os.ttyname(ours), 500000)
+    os.close(ours)
+    assert len(os.listdir("/proc/self/fd")) == files - 2

@@ -326,9 +326,9 @@ def test_a_round_trip_is_timed_one_at_a_time() -> None:
     sent = session._sequence
     session.drive(COMMAND, 10.005)
     session.receive(talk.report(number + 1, last_sequence=sent - 1), 10.01)
-    assert session.round_trips.newest is None
+    assert session.echoes.round_trips.newest is None
     session.receive(talk.report(number + 2, last_sequence=sent), 10.03)
-    assert session.round_trips.newest == pytest.approx(0.03)
+    assert session.echoes.round_trips.newest == pytest.approx(0.03)
 
 
 def test_a_board_that_hears_commands_late_gets_none_before_the_next_arm_edge() -> None:
@@ -345,7 +345,7 @@ def test_a_board_that_hears_commands_late_gets_none_before_the_next_arm_edge() -
     session.drive(replace(COMMAND, start_heading=0.0), 21.0)
     session._heard_at = 21.0
     session.receive(talk.report(number + 3, last_sequence=session._sequence), 21.05)
-    assert session.round_trips.newest == pytest.approx(0.05)
+    assert session.echoes.round_trips.newest == pytest.approx(0.05)
 
 
 def test_a_message_that_only_a_host_sends_is_no_word_of_the_board() -> None:

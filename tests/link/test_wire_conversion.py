@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import replace
+from typing import Any
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from link_bench import ALLOCATION, COMMAND, CONFIGURATION
 
+from control.link.board_limits import CONFIGURATION_LIMITS, objections
 from control.link.conversion import (
     Configuration,
     DriveCommand,
@@ -167,3 +170,37 @@ def test_a_configuration_value_that_is_not_positive_is_refused_by_name(name: str
     given_value = (8.0, value, 8.0) if isinstance(getattr(CONFIGURATION, name), tuple) else value
     with pytest.raises(LinkError, match=name):
         configure_message(replace(CONFIGURATION, **{name: given_value}))
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        (
+            {"resistances": (2.5, 100.0, 1.5)},
+            "resistance of coil 2 of 100 ohm; the board takes 0.1 to 10 ohm",
+        ),
+        ({"inductances": (0.125, 0.055, 0.2)}, "inductance of coil 3 of 200 mH; the board takes 3 to 160 mH"),
+        ({"inductances": (0.006, 0.055, 0.014)}, "coil 1 with L/R = 2.4 ms"),
+        (
+            {"current_limits": (8.0, 8.0, 12.5)},
+            "current limit of coil 3 of 12.5 A; the board takes 0.001 to 12 A",
+        ),
+        ({"supply": 60.0}, "supply of 60 V; the board takes 5 to 50 V"),
+        ({"dead_man": 0.6}, "dead-man time of 600 ms; the board takes 10 to 500 ms"),
+    ],
+)
+def test_a_configuration_that_the_board_would_refuse_is_refused_with_what_it_takes(
+    changes: dict[str, Any], words: str
+) -> None:
+    with pytest.raises(LinkError, match=re.escape(words)):
+        configure_message(replace(CONFIGURATION, **changes))
+
+
+@pytest.mark.parametrize("name", CONFIGURATION_LIMITS)
+def test_the_board_takes_what_the_host_may_send(name: str) -> None:
+    """Each field at its limits, but for coils that would be too fast."""
+    usual = configure_message(CONFIGURATION)
+    for number in CONFIGURATION_LIMITS[name]:
+        value = getattr(usual, name)
+        extreme = replace(usual, **{name: (number,) * len(value) if isinstance(value, tuple) else number})
+        assert [wrong for wrong in objections(extreme) if "L/R" not in wrong] == []

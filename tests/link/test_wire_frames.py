@@ -240,3 +240,52 @@ def test_a_decoder_that_starts_anew_forgets_what_had_begun_and_keeps_its_counts(
     [packet] = decoder.feed(encode(DRIVE, 7, 9)[1:])
     assert (packet.message, packet.sequence, packet.boot_id) == (DRIVE, 7, 9)
     assert decoder.dropped == counted >= 1
+
+
+@pytest.mark.parametrize(("cut", "size", "oversize"), [(0, 64, 0), (0, 65, 1), (1, 64, 0), (1, 65, 1)])
+def test_a_frame_may_be_as_long_as_the_boards_buffer_and_no_longer(
+    cut: int, size: int, oversize: int
+) -> None:
+    decoder = Decoder()
+    frame = b"\x01" * size
+    decoder.feed(frame + b"\0" if cut == 0 else frame)
+    decoder.feed(b"" if cut == 0 else b"\0")
+    assert (decoder.oversize, decoder.dropped) == (oversize, 1)
+
+
+def test_every_broken_frame_is_counted_again() -> None:
+    good = encode(Stop(), 3, 4)
+    frames = {
+        "bad_cobs": b"\x09abc\0",
+        "bad_crc": cobs.encode(bytes(10)) + b"\0",
+        "wrong_length": cobs.encode(b"ab") + b"\0",
+        "oversize": b"\x01" * 70 + b"\0",
+        "unknown_type": _frame(bytes((77, 1, 0, 0, 0, 0))),
+        "wrong_version": encode(Stop(), 3, 4, version=9),
+    }
+    decoder = Decoder()
+    for _ in range(3):
+        for frame in frames.values():
+            assert decoder.feed(b"\0" + frame) == []
+    decoder.feed(b"x" * 80)
+    decoder.feed(b"x" * 80)
+    assert {name: getattr(decoder, name) for name in frames} == dict.fromkeys(frames, 3) | {"oversize": 4}
+    decoder.feed(b"\0" + _frame(bytes((5, 1, 0, 0, 0, 0, 1))) * 2)
+    assert decoder.wrong_length == 5
+    assert [packet.message for packet in decoder.feed(good)] == [Stop()]
+
+
+def _frame(payload: bytes) -> bytes:
+    return cobs.encode(payload + crc_hqx(payload, 0xFFFF).to_bytes(2, "little")) + b"\0"
+
+
+def test_the_hash_is_the_crc_of_the_bytes_that_travel_and_never_none() -> None:
+    body = cobs.decode(encode(CONFIGURE, 1, 1)[1:-1])[6:-2]
+    assert configuration_hash(CONFIGURE) == crc_hqx(body, 0xFFFF)
+    assert crc_hqx(b"123456789", 0xFFFF) == 0x29B1, "the check value of this CRC"
+
+
+@pytest.mark.parametrize(("header", "named"), [((65536, 0), "sequence 65536"), ((1, -1), "boot id -1")])
+def test_a_refused_header_is_named(header: tuple[int, int], named: str) -> None:
+    with pytest.raises(WireError, match=named):
+        encode(Hello(), *header)

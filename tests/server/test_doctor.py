@@ -214,3 +214,25 @@ def test_a_camera_that_gives_less_than_was_asked_or_nothing_to_see_is_noticed(
     write_video(tmp_path / "robot.avi", rate=30.0, shade=1)
     real.rig_file.write_text(text)
     assert real.examined()["picture"]["level"] == "warning"
+
+
+def test_the_traffic_log_of_a_rig_that_runs_is_left_alone(
+    rig_file: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("XDG_DATA_HOME", str(rig_file.parent / "home"))
+    rig_file.write_text("[link]\ntraffic_log = true\n")
+    assert examined("--rig", str(rig_file), "--data", str(rig_file.parent / "data")).problems == 0
+    assert list(rig_file.parent.rglob("*traffic*")) == []
+
+
+def test_a_path_that_cannot_be_looked_at_is_a_problem_and_no_traceback(tmp_path: Path) -> None:
+    assert "File name too long" in examined("--rig", str(tmp_path / ("a" * 300)))["rig file"]["finding"]
+
+
+def test_a_coil_that_the_board_cannot_regulate_is_named_in_its_own_units(rig_file: Path) -> None:
+    rig_file.write_text(
+        "[coils.z]\ndiameter_mm = 225\nseparation_mm = 110\nturns = 154\nresistance_ohm = 1.5\ninductance_mH = 1\n"
+    )
+    found = examined("--rig", str(rig_file))["board settings"]
+    assert found["level"] == "problem"
+    assert "inductance of coil 3 of 1 mH; the board takes 3 to 160 mH" in found["finding"]

@@ -261,3 +261,19 @@ def test_whatever_the_layout_the_text_says_what_was_asked(changes: dict[str, Any
     text = with_settings(layout, before, wanted)
     assert settings_in(text, Path("rig.toml")) == wanted
     assert (differences(before, wanted) == ()) == (before == wanted)
+
+
+def test_a_path_that_cannot_be_looked_at_is_an_error_that_names_it(tmp_path: Path) -> None:
+    with pytest.raises(RigFileError, match=r"cannot read the rig file .*File name too long"):
+        RigStore(tmp_path / ("a" * 300))
+
+
+def test_a_file_is_taken_over_although_what_it_was_cannot_be_kept(path: Path) -> None:
+    path.write_text('name = "before"\n')
+    store = RigStore(path)
+    path.write_text('name = "after"\n')
+    (previous_of(path) / "in the way").mkdir(parents=True)
+    with pytest.raises(RigFileError, match=r"is in force, but what it was before cannot be kept"):
+        store.take_disk(store.plan_of_disk())
+    assert (store.settings.name, store.is_as_read) == ("after", True)
+    assert sorted(each.name for each in path.parent.iterdir()) == [path.name, previous_of(path).name]
