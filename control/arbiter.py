@@ -210,7 +210,9 @@ def _board(health: Health) -> Iterator[Finding]:
 def _line(health: Health) -> Iterator[Finding]:
     if not health.bad_share <= LINE_POOR:
         severity = Severity.WARN if health.bad_share <= LINE_BAD else Severity.DISARM
-        message = f"{health.bad_share:.0%} of the messages on the serial line are broken: check cable and ground"
+        message = (
+            f"{health.bad_share:.0%} of the messages on the serial line are broken: check cable and ground"
+        )
         yield Finding(severity, "line", message)
     if not health.line_lateness <= LINE_SLOW:
         severity = Severity.WARN if health.line_lateness <= LINE_TOO_SLOW else Severity.DISARM

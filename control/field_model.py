@@ -61,6 +61,8 @@ class FieldModel:
         self._strength = 0.0
         self._full_at = math.inf
         self._offset = math.inf
+        self.reported_at = -math.inf
+        """The time (s) that the board's newest report tells of, as far as is known."""
         self._corners: deque[Corner] = deque(maxlen=HISTORY)
 
     @property
@@ -159,7 +161,7 @@ class FieldModel:
         the board has missed a command.
         """
         self._offset = min(self._offset + CLOCK_LEAK, received_at - board_time)
-        at = board_time + self._offset
+        self.reported_at = at = board_time + self._offset
         if not self._on or not self._corners or at < self._corners[0].time:
             return
         shift = wrap(heading - self.heading_at(at))
@@ -173,6 +175,7 @@ class FieldModel:
     def forget_clock(self) -> None:
         """The board has restarted: its time begins again."""
         self._offset = math.inf
+        self.reported_at = -math.inf
 
     def heading_at(self, time: float) -> float:
         """The field's heading at a recent `time`, rad, unwrapped."""

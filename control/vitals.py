@@ -20,7 +20,7 @@ LONGEST_BLIND_DRIVE = 0.5
 """A board that hears nothing drives on for this long at most, s: the longest dead-man that it takes."""
 
 REPORT_FRESH = 0.050
-"""So long after a report the board's field is known, s: five reports, or three frames of a loop that loses some."""
+"""So long after what a report tells of the board's field is known, s: five reports, or three frames."""
 
 
 class Vitals:
@@ -63,7 +63,7 @@ class Vitals:
         return (
             telemetry is not None
             and telemetry.state is BoardState.DRIVING
-            and now - telemetry.received_at <= REPORT_FRESH
+            and now - self._parts.field.reported_at <= REPORT_FRESH
             and self._mismatch is AGREED
         )
 

@@ -142,7 +142,7 @@ def _another(used: UsbPort, boards: Sequence[UsbPort]) -> str:
     listed = ", ".join(board.in_words for board in boards)
     return (
         f"the board that was used, {used.in_words}, is not connected any more, and {listed} is not taken for it. "
-        "Plug it in again; to use another one, reload the rig file or start anew"
+        "Plug it in again; to use another one, name its port as link.port in the rig file, or start pivotrig anew"
     )
 
 

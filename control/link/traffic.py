@@ -43,6 +43,9 @@ MOST_NOTES = 4096
 PACE = 0.25
 """How often the writer looks, s."""
 
+LAST_NOTES = 1.0
+"""The writer gets this long to come to an end, s: the rig's own end does not wait for a disk."""
+
 _ENTRY = struct.Struct("<dBH")
 _COUNT = struct.Struct("<I")
 _LONGEST = 0xFFFF
@@ -80,8 +83,10 @@ class TrafficLog:
     def wrap(self, port: SerialLine) -> SerialLine:
         """The port with this log listening; begins a new file at the first one."""
         if self._writer is None:
-            self._ending.clear()
-            self._writer = threading.Thread(target=self._write, name="traffic log", daemon=True)
+            self._ending = threading.Event()
+            self._writer = threading.Thread(
+                target=self._write, args=(self._ending,), name="traffic log", daemon=True
+            )
             self._writer.start()
         return TappedPort(port, self)
 
@@ -93,33 +98,33 @@ class TrafficLog:
         self._notes.append(Entry(self._clock(), kind, data))
 
     def close(self) -> None:
-        """Writes what is noted and ends; `wrap` begins anew."""
+        """Writes what is noted and ends, without waiting for a disk that hangs; `wrap` begins anew."""
         self._ending.set()
         if self._writer is not None:
-            self._writer.join()
+            self._writer.join(LAST_NOTES)
             self._writer = None
 
     # ---- on the writer's thread
 
-    def _write(self) -> None:
+    def _write(self, ending: threading.Event) -> None:
         try:
             has_ended = False
             while not has_ended:
-                has_ended = self._write_one_file()
+                has_ended = self._write_one_file(ending)
         except OSError as error:
             self.problem = f"the traffic log stopped: {error}"
             log.warning("%s", self.problem)
 
-    def _write_one_file(self) -> bool:
+    def _write_one_file(self, ending: threading.Event) -> bool:
         """Until it is full, or the log is to end: true then."""
         self.file.parent.mkdir(parents=True, exist_ok=True)
         rotate(self.file)
         with self.file.open("xb") as out:
             out.write(MAGIC)
             while out.tell() < self._largest:
-                ending = self._ending.wait(PACE)
+                is_ending = ending.wait(PACE)
                 self._write_notes(out)
-                if ending:
+                if is_ending:
                     return True
         return False
 

@@ -58,7 +58,8 @@ def coils(
 ) -> None:
     """Field per ampere, measured with a hand-held magnetometer; without it the geometry is trusted.
 
-    Hold the probe along the axis of the coil that is named, at the same place for all its readings.
+    Hold the probe along the axis of the coil that is named, at the same place for all its readings. A coil carries
+    its current until you have typed what you read, for five minutes at most.
     """
     rig_file = read_rig_file(rig)
     if (readings is None) == (not (measure or simulate_readings)):

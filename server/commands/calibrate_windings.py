@@ -103,7 +103,10 @@ def sense(
     rig: RigOption = None,
     as_json: JsonOption = False,
 ) -> None:
-    """Current sense of each coil and direction, against an ammeter in its lead."""
+    """Current sense of each coil and direction, against an ammeter in its lead.
+
+    A coil carries its current until you have typed what you read, for five minutes at most.
+    """
     rig_file = read_rig_file(rig)
     axes = coils_asked_for(coil)
     if simulate_readings:

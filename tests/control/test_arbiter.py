@@ -331,10 +331,11 @@ CAUSES: dict[str, tuple[dict[str, Any], Severity]] = {
     "stall": ({"tick_gap": 0.5}, HOLD),
     "camera": ({"frame_age": 1.0}, HOLD),
     "lost": ({"tracking": Tracking.LOST}, HOLD),
-    "sign": ({"turned_away": 1.0}, DISARM),
-    "stuck": ({"stuck_age": 1.0}, WARN),
     "board": ({"board_faults": ("driver_fault",)}, LATCH),
     "line": ({"bad_share": 0.05}, WARN),
+    "slow": ({"line_lateness": 0.15}, WARN),
+    "sign": ({"turned_away": 1.0}, DISARM),
+    "stuck": ({"stuck_age": 1.0}, WARN),
     "heat": ({"is_too_hot": True}, HOLD),
 }
 

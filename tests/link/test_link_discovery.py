@@ -109,7 +109,7 @@ def test_auto_does_not_take_another_board_for_the_one_that_it_used() -> None:
     for others in ([CLONE], [UsbPort("/dev/ttyACM0", UNO.usb_id, "another")], [CLONE, CLONE]):
         there[:] = others
         with pytest.raises(
-            PortError, match=r"by-id/usb-Arduino_7583-if00.* is not connected any more.*reload"
+            PortError, match=r"by-id/usb-Arduino_7583-if00.* is not connected any more.*link.port"
         ):
             locate()
     there[:] = [CLONE, UNO]

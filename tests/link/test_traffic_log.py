@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+import threading
 import time
 from collections.abc import Iterator
 from dataclasses import replace
@@ -16,6 +17,7 @@ from link_bench import COMMAND, Rig, rig, until
 
 from control.link.traffic import (
     KEPT_FILES,
+    LAST_NOTES,
     MAGIC,
     MOST_NOTES,
     Entry,
@@ -143,6 +145,25 @@ def test_a_writer_that_cannot_keep_up_loses_notes_counts_them_and_says_so(file: 
     traffic.close()
     assert len(list(read_log(file))) == MOST_NOTES + 1
     assert words(file)[-1].endswith("7 entries are missing here")
+
+
+def test_a_disk_that_hangs_does_not_hold_up_the_end_of_the_rig(file: Path) -> None:
+    disk_comes_back = threading.Event()
+
+    def clock() -> float:
+        """The writer itself asks for the time only when it notes that entries are missing."""
+        if threading.current_thread().name == "traffic log":
+            disk_comes_back.wait()
+        return 1.5
+
+    traffic = TrafficLog(file, clock)
+    for _ in range(MOST_NOTES + 1):
+        traffic.note(Kind.TO_BOARD, b"\x05")
+    traffic.wrap(NO_PORT)
+    begin = time.monotonic()
+    traffic.close()
+    assert LAST_NOTES <= time.monotonic() - begin < LAST_NOTES + 1.0
+    disk_comes_back.set()
 
 
 @pytest.mark.exclusive
