@@ -230,6 +230,10 @@ class SimulationSection(Section):
         return self
 
 
+REAL_PORTS = ("/dev/ttyACM", "/dev/ttyUSB", "/dev/serial/", "/dev/cu.", "auto")
+"""Names that a real board's port begins with."""
+
+
 class RigFile(Section):
     """One rig."""
 
@@ -255,6 +259,15 @@ class RigFile(Section):
         if self.link.port.startswith("sim://") and not self.is_simulated:
             raise ValueError(
                 'a simulated port (link.port) needs the simulated camera (camera.uri = "sim://")'
+            )
+        if (
+            self.is_simulated
+            and self.simulation.board.startswith("tcp://")
+            and self.link.port.startswith(REAL_PORTS)
+        ):
+            raise ValueError(
+                f"link.port is {self.link.port!r}, a real board's, and camera.uri is simulated: coils would carry "
+                "current for a robot that nobody sees. Give the port that the board process has printed"
             )
         return self
 

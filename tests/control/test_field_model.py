@@ -89,6 +89,7 @@ def test_the_mirror_points_where_the_board_points(bench: Bench, seed: int) -> No
     bench.drive(PIVOT_A, 0.0, 0.3, start=0.3)
     for _ in range(40):
         bench.pass_time(10)
+        bench.link.poll()
         bench.drive(PIVOT_A, 0.0, 0.3)
     pivot: Pivot = PIVOT_A
     for _ in range(120):
@@ -105,6 +106,7 @@ def test_the_mirror_stops_exactly_on_its_goal(bench: Bench) -> None:
     bench.drive(PIVOT_A, 0.0, 0.0, start=0.0)
     for _ in range(40):
         bench.pass_time(10)
+        bench.link.poll()
         bench.drive(PIVOT_A, 1.7, 0.35)
     assert bench.field.heading == 0.35
     assert bench.field.is_settled

@@ -277,3 +277,9 @@ def test_a_file_is_taken_over_although_what_it_was_cannot_be_kept(path: Path) ->
         store.take_disk(store.plan_of_disk())
     assert (store.settings.name, store.is_as_read) == ("after", True)
     assert sorted(each.name for each in path.parent.iterdir()) == [path.name, previous_of(path).name]
+
+
+@pytest.mark.parametrize("port", ["/dev/ttyACM0", "/dev/serial/by-id/usb-Arduino", "auto"])
+def test_a_real_board_is_not_driven_by_a_simulated_camera(port: str) -> None:
+    with pytest.raises(ValueError, match="a robot that nobody sees"):
+        RigFile.model_validate({"link": {"port": port}, "simulation": {"board": "tcp://127.0.0.1:5000"}})
