@@ -289,3 +289,16 @@ def test_the_hash_is_the_crc_of_the_bytes_that_travel_and_never_none() -> None:
 def test_a_refused_header_is_named(header: tuple[int, int], named: str) -> None:
     with pytest.raises(WireError, match=named):
         encode(Hello(), *header)
+
+
+def configuration_whose_sum_is_zero() -> Configure:
+    """The low 16 bits of a field reach every value of a CRC of 16 bits exactly once."""
+    for low in range(65536):
+        candidate = replace(CONFIGURE, max_rate=(1 << 20) + low)
+        if crc_hqx(cobs.decode(encode(candidate, 1, 1)[1:-1])[6:-2], 0xFFFF) == 0:
+            return candidate
+    raise AssertionError("a CRC that skips a value")
+
+
+def test_a_configuration_whose_sum_is_zero_is_told_from_none() -> None:
+    assert configuration_hash(configuration_whose_sum_is_zero()) == 1
