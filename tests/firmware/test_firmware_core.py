@@ -426,3 +426,37 @@ def test_a_message_that_finds_no_room_is_dropped_whole(twins: Twins, banners: in
     twins.drain()
     twins.run(20)
     assert twins.reports
+
+
+@pytest.mark.parametrize("goal", [0, 1, 2, 3, 5, 25])
+@pytest.mark.parametrize("rate", [1, 2, 3, 7])
+@pytest.mark.parametrize("sense", [1, -1])
+def test_the_slowest_rates_arrive_exactly_at_the_nearest_goals(
+    driving: Twins, goal: int, rate: int, sense: int
+) -> None:
+    """In units of 2^-32 turn and of that a millisecond."""
+    for _ in range(6):
+        driving.say(replace(CALM, rate=sense * rate, heading_goal=sense * goal % 2**32))
+        driving.run(10)
+    assert driving.reports[-1].heading == sense * goal % 2**32
+
+
+@pytest.mark.parametrize("ramp", [1, 2, 3, 17, 64, 128, 255, 256, 257, 999, 1000])
+def test_a_pivot_switch_takes_its_ramp_whatever_that_is(twins: Twins, ramp: int) -> None:
+    twins.say(Hello())
+    twins.say(replace(CONFIGURE, ramp=ramp))
+    twins.say(ARMING)
+    twins.run(3)
+    for _ in range(ramp // 50 + 2):
+        twins.say(replace(CALM, pivot=-1))
+        twins.run(50)
+    assert twins.reports[-1].elevation == 4551
+
+
+@pytest.mark.parametrize("tilt", [0, 1, 2, 3])
+def test_the_smallest_tilts_switch_too(driving: Twins, tilt: int) -> None:
+    for pivot in (1, -1, 1):
+        for _ in range(4):
+            driving.say(replace(CALM, pivot=pivot, tilt=tilt))
+            driving.run(50)
+        assert driving.reports[-1].elevation == -pivot * tilt
