@@ -15,8 +15,9 @@ from control.model import PIVOT_A, PIVOT_B, Pivot, wrap
 
 HISTORY = 240
 """Corner points kept: more than a second of walking at 60 drives a second."""
-CLOCK_LEAK = 1e-5
-"""How fast the smallest seen transit time is forgotten, s per telemetry message: quartz drifts by less."""
+CLOCK_DRIFT = 0.008
+"""How fast the smallest seen transit time is forgotten, s/s: an UNO's processor runs on a ceramic resonator, which is
+off by up to 0.5 %."""
 
 DISAGREEMENT = math.radians(2.0)
 """Mirror and board may differ by this: 10 ms of transit at 2 rad/s is 1.1 degrees, rad."""
@@ -61,6 +62,7 @@ class FieldModel:
         self._strength = 0.0
         self._full_at = math.inf
         self._offset = math.inf
+        self._board_time = self._received_at = -math.inf
         self.reported_at = -math.inf
         """The time (s) that the board's newest report tells of, as far as is known."""
         self._corners: deque[Corner] = deque(maxlen=HISTORY)
@@ -82,6 +84,11 @@ class FieldModel:
     def pivot(self) -> Pivot:
         """The end that the field presses down."""
         return PIVOT_B if self._elevation > 0.0 else PIVOT_A
+
+    @property
+    def is_on(self) -> bool:
+        """Whether the board has been told to drive."""
+        return self._on
 
     @property
     def is_settled(self) -> bool:
@@ -160,7 +167,11 @@ class FieldModel:
         mirror's own errors do not add up (every goal is absolute), so only a large one is believed: then
         the board has missed a command.
         """
-        self._offset = min(self._offset + CLOCK_LEAK, received_at - board_time)
+        if board_time < self._board_time:
+            self.forget_clock()
+        forgotten = CLOCK_DRIFT * (received_at - self._received_at)
+        self._board_time, self._received_at = board_time, received_at
+        self._offset = min(self._offset + forgotten, received_at - board_time)
         self.reported_at = at = board_time + self._offset
         if not self._on or not self._corners or at < self._corners[0].time:
             return
@@ -173,7 +184,7 @@ class FieldModel:
         )
 
     def forget_clock(self) -> None:
-        """The board has restarted: its time begins again."""
+        """The board's time begins again: it has restarted, or its count of milliseconds has gone round (49 days)."""
         self._offset = math.inf
         self.reported_at = -math.inf
 

@@ -37,6 +37,7 @@ NEEDS_CONSENT = (
 LEADS_OUT = (
     "the next step would lead the robot out of the workspace; resume goes on as soon as it leads inward"
 )
+NOT_SEEN = "the robot is not seen; put it in the camera's view and wait for a lock"
 UNKNOWN_HEAT = (
     f"what the coils carried before this start is not known: they count as {ASSUMED_AT_START:.0%} hot"
 )
@@ -83,6 +84,15 @@ class ControlLoop:
         """The controller that the running tick waits for, "" for none; from any thread."""
         walk = self._walk
         return walk.walker.controller.name if walk is not None and walk.walker.is_deciding else ""
+
+    @property
+    def obstacle(self) -> str:
+        """Why no current may flow now, "" when it may; a warning is no reason."""
+        return self._vitals.blocking or ("" if self._is_seen else NOT_SEEN)
+
+    @property
+    def _is_seen(self) -> bool:
+        return self._pose is not None and self._parts.perception.tracking is Tracking.LOCKED
 
     def announce(self, severity: str, code: str, message: str) -> None:
         """A line of the event log from somebody else on the rig's thread."""
@@ -287,8 +297,8 @@ class ControlLoop:
     def _require_fit(self) -> Pose:
         """The pose, when nothing forbids current; raises `Refused` with the reason."""
         self._vitals.require_none(self._state)
-        if self._pose is None or self._parts.perception.tracking is not Tracking.LOCKED:
-            raise Refused("the robot is not seen; put it in the camera's view and wait for a lock")
+        if self._pose is None or not self._is_seen:
+            raise Refused(NOT_SEEN)
         return self._pose
 
     def _energise(self) -> None:

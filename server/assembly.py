@@ -71,9 +71,9 @@ class Machine:
     faults: Faults | None
     traffic: TrafficLog | None
 
-    def open(self) -> None:
-        """Open the link; raises `LinkError`."""
-        self.link.open()
+    def open(self, *, patiently: bool = False) -> None:
+        """Open the link; raises `LinkError`, unless a board that is not there is waited for `patiently`."""
+        self.link.open(patiently=patiently)
 
     def stop_coils(self) -> None:
         """Zero now, from any thread; nothing is driven any more until a reset."""

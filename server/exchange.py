@@ -61,11 +61,13 @@ def without_traffic_log(settings: RigFile) -> RigFile:
 def exchange(old: Machine, settings: RigFile, build: Build) -> Exchange:
     """Close the old machine, with its coils at zero, and open one with other settings, or else the old one again.
 
-    Blocks for as long as a camera takes to open. Raises `NoMachine`.
+    A board that was not there before need not be there afterwards. Blocks for as long as a camera takes to open.
+    Raises `NoMachine`.
     """
+    had_no_board = not old.link.is_ready
     old.close()
     try:
-        machine, failure = _opened(settings, build), None
+        machine, failure = _opened(settings, build, patiently=had_no_board), None
     except Exception as error:
         failure = error
         log.warning(
@@ -89,7 +91,7 @@ def carried_heat(old: Machine, settings: RigFile) -> CoilHeat:
 
 def _restored(settings: RigFile, build: Build, failure: Exception) -> Machine:
     try:
-        return _opened(settings, build)
+        return _opened(settings, build, patiently=True)
     except Exception as error:
         raise NoMachine(
             f"the changed rig could not be opened ({failure}), and the rig as it was cannot be opened any more "
@@ -97,10 +99,10 @@ def _restored(settings: RigFile, build: Build, failure: Exception) -> Machine:
         ) from error
 
 
-def _opened(settings: RigFile, build: Build) -> Machine:
+def _opened(settings: RigFile, build: Build, *, patiently: bool) -> Machine:
     machine = build(settings)
     try:
-        machine.open()
+        machine.open(patiently=patiently)
     except BaseException:
         machine.close()
         raise

@@ -63,11 +63,12 @@ def _tick(machine: Machine, watch: Watch | None) -> Snapshot:
 def _until_ready(machine: Machine, watch: Watch | None) -> None:
     give_up = machine.camera.now() + READY_WITHIN
     while True:
-        snapshot = _tick(machine, watch)
-        if not snapshot.faults and snapshot.tracking == "locked":
+        _tick(machine, watch)
+        obstacle = machine.loop.obstacle
+        if not obstacle:
             return
         if machine.camera.now() > give_up:
-            raise Refused(f"the rig is not ready: {snapshot.reason}")
+            raise Refused(f"the rig is not ready: {obstacle}")
 
 
 def _walk(machine: Machine, watch: Watch | None) -> Ended:

@@ -117,8 +117,8 @@ class Rig:
         return self._task.exception()
 
     async def start(self) -> None:
-        """Open the link and start the loop."""
-        await self._thread.begin(self._machine.open)
+        """Open the link and start the loop; a board that is not there yet is waited for, disarmed."""
+        await self._thread.begin(lambda: self._machine.open(patiently=True))
         self._task = asyncio.create_task(self._run(), name="control loop")
 
     async def stop(self) -> None:

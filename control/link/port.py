@@ -64,16 +64,22 @@ class Link:
 
     # ---- opening, losing, closing
 
-    def open(self) -> None:
-        """Opens the port and begins to greet the board; LinkError says what is wrong with the port."""
+    def open(self, *, patiently: bool = False) -> None:
+        """Opens the port and begins to greet the board; LinkError says what is wrong with the port.
+
+        patiently: a port that cannot be opened is tried again later, like one that was lost.
+        """
         if self._serial is not None:
             return
         self._wanted = True
         try:
             self._serial = self._open_port()
         except LinkError as error:
+            self._lose(str(error))
+            if patiently:
+                log.warning("%s; trying again", error)
+                return
             self._wanted = False
-            self._session.lose(str(error))
             raise
         self._retry_after = FIRST_RETRY
         self._session.open()

@@ -241,7 +241,12 @@ def test_a_robot_that_does_not_make_its_sweeps_is_shown_for_a_while() -> None:
         ({"board_faults": ("supply_low",)}, DISARM, "supply", "switch it on"),
         ({"board_faults": ("over_current",)}, LATCH, "board", "the board reports: over_current"),
         ({"board_faults": ("supply_low", "driver_fault")}, LATCH, "board", "supply_low, driver_fault"),
-        ({"not_driving": 0.2, "board_state": "expired"}, HOLD, "expired", "no fresh command reached the board"),
+        (
+            {"not_driving": 0.2, "board_state": "expired"},
+            HOLD,
+            "expired",
+            "no fresh command reached the board",
+        ),
         ({"not_driving": 0.2, "board_state": "stopped"}, DISARM, "board", "does not drive: it is stopped"),
     ],
 )

@@ -157,3 +157,42 @@ def test_a_missed_command_shows_in_the_telemetry_and_the_mirror_follows(bench: B
     assert abs(bench.difference()) > 0.15
     bench.listen()
     assert abs(bench.difference()) < 0.03
+
+
+TRANSIT = 0.0015
+"""A report takes at least this long, s; the newest one is up to 10 ms older."""
+
+
+@pytest.mark.parametrize("drift", [-0.005, -0.001, 0.0, 0.005])
+@pytest.mark.parametrize("tick", [1.0 / 60.0, 1.0 / 15.0])
+def test_the_time_of_a_report_is_known_although_the_boards_clock_is_no_quartz(
+    drift: float, tick: float
+) -> None:
+    """An UNO's resonator is off by up to 0.5 %: 0.3 s in a minute."""
+    field, worst = FieldModel(RAMP, SLEW), 0.0
+    for number in range(1, round(120.0 / tick)):
+        now = tick * number
+        told = math.floor((now - TRANSIT) * 100.0) / 100.0
+        field.advance(now)
+        field.synchronise(told * (1.0 + drift), now, 0.0)
+        if now > 5.0:
+            worst = max(worst, abs(field.reported_at - told))
+    assert worst < 0.010
+
+
+def test_a_count_of_milliseconds_that_goes_round_is_followed() -> None:
+    field = FieldModel(RAMP, SLEW)
+    for number in range(200):
+        now = 0.01 * number
+        field.advance(now)
+        field.synchronise((4_294_966.0 + now) % (2**32 / 1000), now + TRANSIT, 0.0)
+        assert field.reported_at == pytest.approx(now + TRANSIT, abs=0.001)
+
+
+def test_a_board_that_has_restarted_has_told_nothing_yet() -> None:
+    field = FieldModel(RAMP, SLEW)
+    assert field.reported_at == -math.inf
+    field.synchronise(5.0, 7.0, 0.0)
+    assert field.reported_at == 7.0
+    field.forget_clock()
+    assert field.reported_at == -math.inf

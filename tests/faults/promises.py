@@ -35,6 +35,8 @@ class Promise:
     parameters: of the trial.  watch: how long the trial looks, s.  asleep: the loop itself stands still, ms.
     overshoot: share by which a current may pass its limit.  tries: of the operator to go on.
     or_else: another state and code that it may lead to, depending on where the robot is.
+    watchdog: the test of the server's watchdog, which finds it while the loop alone still waits, "" for none; what
+    the operator meets is a fault then.
     """
 
     name: str
@@ -49,6 +51,7 @@ class Promise:
     overshoot: float = OVERSHOOT
     tries: int = 1
     or_else: tuple[RigState, str] | None = None
+    watchdog: str = ""
 
     @property
     def outcomes(self) -> tuple[tuple[RigState, str], ...]:
@@ -57,12 +60,17 @@ class Promise:
         return (usual,) if self.or_else is None else (usual, self.or_else)
 
     @property
+    def states(self) -> tuple[RigState, ...]:
+        """What the operator may meet."""
+        return (FAULT,) if self.watchdog else tuple(state for state, _ in self.outcomes)
+
+    @property
     def state(self) -> str:
-        return " or ".join(state.value for state, _ in self.outcomes)
+        return " or ".join(state.value for state in self.states)
 
     @property
     def go_on(self) -> str:
-        return " or ".join(GO_ON[state] for state, _ in self.outcomes)
+        return " or ".join(GO_ON[state] for state in self.states)
 
     @property
     def kind(self) -> FaultKind:
@@ -113,7 +121,10 @@ _PROMISES = (
     Promise("computer_sleeps", "the computer slept", HELD, "clock", 2000, 151, asleep=2000, watch=3.0),
     Promise("report_nan", "no word from the board; refused reports are counted", DISARMED, "telemetry", 320, 325),
     Promise("controller_raises", "what the controller raised", FAULT, "controller", 2 * FRAME, 3 * FRAME),
-    Promise("controller_hangs", "the loop stood still", HELD, "clock", 3034, 151, asleep=3034, watch=5.0),
+    Promise(
+        "controller_hangs", "which controller hangs", HELD, "clock", 3034, 151, asleep=3034, watch=5.0,
+        watchdog="test_hanging_controller",
+    ),
     Promise("controller_nonsense", "what the controller returned", FAULT, "controller", 2 * FRAME, 3 * FRAME),
     Promise("robot_put", "the robot is not where it should be", HELD, "lost", 217, 218),
     Promise(

@@ -71,7 +71,7 @@ def _row(trial: Trial) -> tuple[str, ...]:
         promise.kind.title,
         promise.sees,
         promise.state,
-        "–" if walks_on else str(reaction.noticed),
+        "–" if walks_on else f"`{promise.watchdog}`" if promise.watchdog else str(reaction.noticed),
         "–" if walks_on else str(promise.zero),
         "–" if walks_on else str(reaction.zero),
         promise.go_on,

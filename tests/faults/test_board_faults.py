@@ -2,6 +2,13 @@
 
 from __future__ import annotations
 
+import pytest
+
+from control.safety import Refused
+from control.snapshot import RigState
+from tests.faults.fault_bench import FaultBench
+from tests.faults.invariants import check_announced, check_limits, check_stays_zero, check_zero
+from tests.faults.promises import PROMISES
 from tests.faults.trial import keeps_its_promise
 
 
@@ -51,3 +58,66 @@ def test_a_coil_of_another_resistance_disarms() -> None:
 def test_exchanged_leads_do_not_drive_the_robot_away() -> None:
     """When a coil's leads are exchanged and the robot turns the wrong way, it is driven for 0.4 s at most."""
     keeps_its_promise("coil_swapped")
+
+
+def test_a_driver_fault_of_a_held_rig_is_found_when_it_is_resumed(bench: FaultBench) -> None:
+    """When a motor driver gives up while the rig is held, its pin says so only once the bridges are on again:
+    resume, and all coils are off within 2 milliseconds of that; a reset is needed."""
+    bench.walk()
+    bench.loop.pause()
+    bench.run_for(0.3)
+    bench.inject("driver_fault")
+    bench.run_for(0.3)
+    assert bench.snapshot.rig is RigState.HELD
+    resumed = bench.board.milliseconds
+    bench.loop.resume()
+    bench.run_for(0.6)
+    assert bench.snapshot.rig is RigState.FAULT
+    assert "driver_fault" in bench.snapshot.reason
+    check_limits(bench.trace.samples, bench.electrics)
+    zero = check_zero(bench.trace, bench.electrics, resumed + 2)
+    check_stays_zero(bench.trace, zero)
+    check_announced(bench.trace, "board", resumed * 1e-3)
+
+
+def test_a_reset_is_not_undone_by_what_the_board_reported_before(bench: FaultBench) -> None:
+    """A reset that greets the board anew holds, however late its first new report comes."""
+    bench.walk()
+    bench.inject("driver_fault")
+    bench.run_for(0.3)
+    bench.faults.clear("driver_fault")
+    bench.run_for(0.3)
+    bench.loop.reset()
+    for _ in range(100):  # looked at so often that the answer to the greeting comes alone
+        bench.machine.camera.pass_time(0.001)  # type: ignore[attr-defined]
+        bench.loop.tick(None, bench.now)
+        assert bench.loop.state is RigState.DISARMED
+    assert bench.machine.link.is_ready
+    bench.go_on()
+
+
+def test_an_arming_that_does_not_reach_the_board_leaves_everything_at_rest(bench: FaultBench) -> None:
+    """When the line fails at the very moment of arming, arming is refused, and nothing believes in a field."""
+    bench.until(lambda snapshot: not snapshot.faults)
+    bench.inject("line_jammed")
+    with pytest.raises(Refused, match="jammed"):
+        bench.arm_now()
+    assert bench.loop.state is RigState.DISARMED
+    assert not bench.loop.parts.field.is_on
+    bench.run_for(0.3)
+    assert not any(any(sample.duty) for sample in bench.trace.samples)
+
+
+@pytest.mark.parametrize("name", ["board_reset", "supply_off"])
+def test_what_happens_to_the_board_of_a_held_rig_is_not_overlooked(bench: FaultBench, name: str) -> None:
+    """A held rig has no current, but it is about to go on: a board that resets, or a supply that fails, ends the
+    hold as it would end the run."""
+    promise = PROMISES[name]
+    bench.walk()
+    bench.loop.pause()
+    bench.run_for(0.3)
+    fault = bench.inject(name)
+    bench.run_for(0.6)
+    assert bench.snapshot.rig is promise.after
+    check_announced(bench.trace, promise.code, fault * 1e-3)
+    check_stays_zero(bench.trace, fault)

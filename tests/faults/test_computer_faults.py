@@ -2,7 +2,15 @@
 
 from __future__ import annotations
 
-from tests.faults.trial import keeps_its_promise
+from dataclasses import replace
+
+import pytest
+
+from control.snapshot import RigState
+from tests.faults.fault_bench import FaultBench
+from tests.faults.invariants import check_announced, check_limits, check_stays_zero, check_zero
+from tests.faults.promises import PROMISES
+from tests.faults.trial import keeps_its_promise, try_out
 
 
 def test_a_loop_that_stalls_is_held() -> None:
@@ -37,3 +45,28 @@ def test_a_controller_that_returns_nonsense_latches() -> None:
     """When a controller wants what no robot can do, the coils are off at once, and the page shows what it
     wanted."""
     keeps_its_promise("controller_nonsense")
+
+
+@pytest.mark.parametrize("stall_ms", [140.0, 150.0, 160.0, 180.0, 199.0])
+def test_a_stall_that_only_the_board_minds_is_held_and_not_blamed_on_robot_or_board(
+    bench: FaultBench, stall_ms: float
+) -> None:
+    """When the computer is busy for just longer than a command lives, the run is kept: you resume. Nothing is said
+    to be broken that is not."""
+    bench.walk()
+    fault = bench.inject("loop_stalls", stall_ms=stall_ms)
+    bench.run_for(0.6)
+    codes = {event.code for event in bench.trace.events if event.severity == "error"}
+    assert bench.snapshot.rig in (RigState.RUNNING, RigState.HELD), bench.snapshot.reason
+    assert codes <= {"expired"}
+    if bench.snapshot.rig is RigState.HELD:
+        check_stays_zero(bench.trace, check_zero(bench.trace, bench.electrics, fault))
+        check_announced(bench.trace, "expired", fault * 1e-3)
+        bench.go_on()
+    check_limits(bench.trace.samples, bench.electrics)
+
+
+@pytest.mark.parametrize("answer", ["inf", "text", "nothing", "pivot"])
+def test_whatever_nonsense_a_controller_returns_latches(answer: str) -> None:
+    """Endless, a word, nothing at all, a pivot that no robot has: the coils are off at once."""
+    try_out(replace(PROMISES["controller_nonsense"], parameters={"answer": answer}))

@@ -67,6 +67,26 @@ def test_a_fault_that_is_put_in_again_takes_its_new_parameters(bench: FaultBench
     assert injection.parameters.model_dump() == {"share": 0.5}
 
 
+@pytest.mark.parametrize(("one", "other"), [("supply_low", "supply_off"), ("sense_dead", "sense_wrong")])
+def test_taking_one_fault_away_leaves_the_other_one_in(bench: FaultBench, one: str, other: str) -> None:
+    """Two faults may spoil the same thing; it is right again when both are gone."""
+    bench.faults.inject(one)
+    bench.faults.inject(other)
+    spoilt = _electrics(bench)
+    bench.faults.clear(one)
+    bench.tick()
+    assert _electrics(bench) == spoilt
+    bench.faults.clear(other)
+    bench.tick()
+    assert _electrics(bench) != spoilt
+
+
+def _electrics(bench: FaultBench) -> tuple[float, ...]:
+    """The supply, and what the three senses show of one ampere."""
+    bridges = bench.board.bridges
+    return bridges.supply, *bridges._sense
+
+
 def test_injections_are_lines_of_the_log(bench: FaultBench) -> None:
     bench.faults.inject("supply_off")
     bench.faults.clear("supply_off")

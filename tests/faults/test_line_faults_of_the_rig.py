@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import pytest
+
+from control.snapshot import RigState
+from tests.faults.fault_bench import FaultBench
 from tests.faults.trial import keeps_its_promise
 
 
@@ -47,3 +51,14 @@ def test_a_slow_line_disarms_and_is_named() -> None:
     """When the line delays every message by a tenth of a second, a stop would come late: the rig disarms, and
     says that it is the line."""
     keeps_its_promise("line_slow")
+
+
+@pytest.mark.parametrize("delay_ms", [60.0, 80.0, 120.0, 150.0, 200.0, 400.0])
+def test_a_slow_line_never_accuses_the_coils(bench: FaultBench, delay_ms: float) -> None:
+    """However slow the line becomes, the rig stops, and does not send you to look for swapped leads."""
+    bench.walk()
+    bench.inject("line_slow", delay_ms=delay_ms)
+    bench.until(lambda snapshot: snapshot.rig is not RigState.RUNNING)
+    bench.run_for(0.5)
+    assert "sign" not in {event.code for event in bench.trace.events}
+    assert bench.snapshot.rig in (RigState.HELD, RigState.DISARMED)

@@ -413,7 +413,9 @@ def test_another_nominal_supply_counts_although_the_sensed_one_stays(driving: Tw
 
 @pytest.mark.parametrize("banners", range(19))
 @pytest.mark.parametrize("taken", range(0, 16, 3))
-def test_a_message_that_finds_no_room_is_dropped_whole(twins: Twins, banners: int, taken: int) -> None:
+def test_every_fill_of_the_transmit_buffer_drops_whole_messages(
+    twins: Twins, banners: int, taken: int
+) -> None:
     """Every fill of the buffer that banners, reports and a slow line can make."""
     twins.say(Hello())
     for number in range(banners):

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from link_bench import COMMAND, Rig, rig
 
 from control.link.messages import Telemetry
-from control.link.quality import FEWEST, MOST_ENTRIES, WINDOW, BoardCounts, BrokenShare, RoundTrips
+from control.link.quality import FEWEST, MOST_ENTRIES, WINDOW, BoardCounts, BrokenShare, Echoes, RoundTrips
 
 QUICK = settings(max_examples=150, deadline=None, derandomize=True)
 
@@ -54,6 +54,47 @@ def test_a_share_keeps_a_bounded_number_of_entries() -> None:
         share.add(1e-6 * number, 0, 1)
     assert share.share(0.1) == 1.0
     assert len(share._entries) == MOST_ENTRIES == share._broken
+
+
+def test_a_line_is_as_late_as_its_reports_show_that_an_echo_is_missing() -> None:
+    echoes = Echoes()
+    echoes.heard(6, 0.0)
+    echoes.sent(7, 0.0)
+    for at in (0.1, 0.2):
+        echoes.heard(6, at)
+        assert echoes.lateness == at
+        assert echoes.unheard(at + 0.05) == pytest.approx(at + 0.05)
+    echoes.heard(7, 0.25)
+    assert echoes.round_trips.newest == 0.25
+    assert echoes.lateness == 0.2, "it may have come right after the last look"
+    echoes.sent(8, 0.26)
+    echoes.heard(8, 0.27)
+    assert echoes.lateness == 0.0
+    assert echoes.unheard(0.3) == 0.0
+
+
+def test_a_line_is_not_late_where_nobody_looked_or_the_board_is_silent() -> None:
+    echoes = Echoes()
+    assert echoes.lateness == 0.0
+    echoes.heard(6, 1.0)
+    echoes.sent(7, 1.001)
+    assert echoes.lateness == 0.0
+    echoes.heard(7, 1.9)
+    assert echoes.round_trips.newest == pytest.approx(0.899)
+    assert echoes.lateness == 0.0
+
+
+def test_an_arm_edge_forgets_how_late_the_line_was() -> None:
+    echoes = Echoes()
+    echoes.sent(7, 0.0)
+    echoes.heard(6, 0.4)
+    echoes.heard(7, 0.5)
+    assert echoes.lateness == 0.4
+    echoes.begin()
+    assert echoes.lateness == 0.0
+    echoes.sent(8, 1.0)
+    echoes.begin()
+    assert echoes.unheard(2.0) == 0.0
 
 
 def test_there_are_no_figures_before_the_first_round_trip() -> None:

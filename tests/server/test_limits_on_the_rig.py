@@ -11,11 +11,13 @@ from control.controllers import Decision
 from control.controllers.manual import Jog
 from control.gait import Gait
 from control.model import PIVOT_A, PIVOT_B, Frame, Pose, Tracking
-from control.runs import Choice, RunRequest, Selection
+from control.runs import Choice, RunRequest, RunState, Selection
 from control.safety import Refused
 from control.simulation.plant import SlipPlant
 from control.simulation.slip import SLIP_TABLE
 from control.snapshot import RigState
+from server.assembly import build_machine
+from server.headless import run_headless
 from server.settings import RigFile, VisionSection
 from tests.faults.fault_bench import EIGHT, GAIT, FaultBench, fault_bench
 
@@ -194,6 +196,22 @@ def test_the_heat_follows_what_flows_and_goes_on_while_disarmed(bench: FaultBenc
     after = bench.loop.coil_heat.shares
     bench.run_for(5.0)
     assert all(late < early for late, early in zip(bench.loop.coil_heat.shares, after, strict=True))
+
+
+def test_a_run_from_the_command_line_is_not_kept_from_walking_by_a_warning() -> None:
+    """Warm coils are told of; they are no reason to say that the rig is not ready."""
+    machine = build_machine(RigFile(), realtime=False)
+    machine.loop.coil_heat = CoilHeat((0.9, 0.9, 0.9))
+    done = run_headless(machine, "a run", RunRequest(EIGHT, duration=1.0))
+    assert done.ended.state is RunState.FINISHED
+    assert "heat" in [event.code for event in machine.loop.take_announcements()]
+
+
+def test_a_run_from_the_command_line_says_what_keeps_the_rig_from_walking() -> None:
+    machine = build_machine(RigFile(), realtime=False)
+    machine.loop.coil_heat = CoilHeat((1.1, 0.9, 0.9))
+    with pytest.raises(Refused, match="the rig is not ready: coil x is at 110% of the heat"):
+        run_headless(machine, "a run", RunRequest(EIGHT, duration=1.0))
 
 
 # Currents ----------------------------------------------------------------------------------------

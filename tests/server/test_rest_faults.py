@@ -1,6 +1,7 @@
 """Faults on demand over REST, on a simulated rig in real time."""
 
 import asyncio
+import json
 import time
 
 import httpx
@@ -134,6 +135,23 @@ async def test_a_real_rig_has_no_faults_to_inject():
             assert answer.status_code == 404, (method, path)
             assert "This rig is real" in answer.json()["detail"]
     machine.close()
+
+
+def _no_such_number(text):
+    raise AssertionError(f"{text} is no JSON")
+
+
+@pytest.mark.parametrize("name", ["sighting_nan", "report_nan", "camera_timeless"])
+async def test_what_is_no_number_never_leaves_the_program(api, at, name):
+    """Whatever is not a number inside, no page and no script ever reads NaN."""
+    await api.delete(FAULTS)
+    await api.post(FAULTS, json={"name": name})
+    await asyncio.sleep(0.2)
+    async with at.socket("/api/v1/telemetry") as telemetry:
+        messages = [await telemetry.recv() for _ in range(10)]
+    for text in (*messages, (await api.get("/state")).text, (await api.get("/events")).text):
+        json.loads(text, parse_constant=_no_such_number)
+    await api.delete(FAULTS)
 
 
 async def test_a_hanging_controller_is_latched_and_let_go_again(api):

@@ -14,7 +14,7 @@ from typing import Any
 
 from control.registry import Parameters, UnknownName
 from control.simulation.faults import board, camera, computer, limits, line
-from control.simulation.faults.kind import FaultKind
+from control.simulation.faults.kind import Family, FaultKind
 from control.simulation.faults.points import FaultPoints
 
 KINDS: dict[str, FaultKind] = {
@@ -116,15 +116,22 @@ class Faults:
         if injection is None:
             return
         if injection.is_on:
-            injection.kind.end(self._points)
+            self._end(injection)
         self._announce("info", "injected", f"no longer injected: {injection.kind.title}")
 
     def _toggle(self, injection: Injection) -> None:
         if injection.is_on:
-            injection.kind.end(self._points)
+            self._end(injection)
         else:
             injection.kind.begin(self._points, injection.parameters)
         injection.is_on = not injection.is_on
+
+    def _end(self, ended: Injection) -> None:
+        """Put the switch back, but for who else has thrown the same: a supply that is off and low stays off."""
+        ended.kind.end(self._points)
+        for other in self:
+            if other is not ended and other.is_on and other.kind.family is ended.kind.family is Family.BOARD:
+                other.kind.begin(self._points, other.parameters)
 
 
 def kind_named(name: str) -> FaultKind:
