@@ -462,3 +462,15 @@ def test_the_smallest_tilts_switch_too(driving: Twins, tilt: int) -> None:
             driving.say(replace(CALM, pivot=pivot, tilt=tilt))
             driving.run(50)
         assert driving.reports[-1].elevation == -pivot * tilt
+
+
+@pytest.mark.parametrize(("inductance", "resistance"), [(2121, 400), (3041, 400), (2120, 400), (1000, 1280)])
+def test_the_model_of_a_coil_is_rounded_down_at_the_edge_too(
+    driving: Twins, inductance: int, resistance: int
+) -> None:
+    """6 553 601 is 2141 times 3061: where the quotient of 6 553 600 is nearly one more."""
+    driving.say(Stop())
+    driving.say(replace(CONFIGURE, inductances=(inductance,) * 3, resistances=(resistance,) * 3))
+    driving.say(ARMING)
+    walk(driving, 30, rate=phase_rate(1.5), heading_goal=phase(1.0))
+    assert driving.twin.state == BoardCode.DRIVING
