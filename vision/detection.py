@@ -62,6 +62,8 @@ class ColourRange:
         """255 where a BGR picture is within the range, else 0."""
         low, high = (min(round(end * HUE_STEPS / 360.0), HUE_STEPS - 1) for end in self.hue)
         if low <= high:
+            if self.hue[0] > self.hue[1]:  # through red, and all the way round: the gap is less than a step
+                low, high = 0, HUE_STEPS - 1
             return self._between(cv2.cvtColor(image, cv2.COLOR_BGR2HSV), low, high)
         if low > RED_FOR_BLUE >= high:
             # With red and blue exchanged the hue h becomes 120 - h, and a range through red has no gap.

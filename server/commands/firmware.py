@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
+import time
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, NoReturn
@@ -25,6 +26,9 @@ FolderOption = Annotated[
     Path | None, typer.Option("--folder", help="Where to build; default: build/firmware beside the program.")
 ]
 JsonOption = Annotated[bool, typer.Option("--json", help="One JSON object on stdout.")]
+
+LOOK_AGAIN = 0.1
+"""Between two looks at the emulator, s."""
 
 MOST_SHARE = 0.6
 """Of its millisecond that the 1 kHz interrupt may take: the rest is for bytes and messages."""
@@ -182,7 +186,8 @@ def _run_until_interrupted(command: list[str]) -> NoReturn:
         subprocess.Popen([*command, "--end-with-stdin"], stdin=subprocess.PIPE) as process,
         suppress(KeyboardInterrupt),
     ):
-        process.wait()
+        while process.poll() is None:
+            time.sleep(LOOK_AGAIN)  # a signal just before a wait without end would be seen at its end
     sys.exit(FAILED if process.returncode else 0)
 
 

@@ -47,10 +47,8 @@ def test_a_controller_that_returns_nonsense_latches() -> None:
     keeps_its_promise("controller_nonsense")
 
 
-@pytest.mark.parametrize("stall_ms", [140.0, 150.0, 160.0, 180.0, 199.0])
-def test_a_stall_that_only_the_board_minds_is_held_and_not_blamed_on_robot_or_board(
-    bench: FaultBench, stall_ms: float
-) -> None:
+@pytest.mark.parametrize("stall_ms", [140.0, 150.0, 160.0, 180.0, 199.0, 205.0, 225.0, 250.0])
+def test_a_short_stall_is_held_and_not_blamed_on_coils_or_board(bench: FaultBench, stall_ms: float) -> None:
     """When the computer is busy for just longer than a command lives, the run is kept: you resume. Nothing is said
     to be broken that is not."""
     bench.walk()
@@ -58,10 +56,10 @@ def test_a_stall_that_only_the_board_minds_is_held_and_not_blamed_on_robot_or_bo
     bench.run_for(0.6)
     codes = {event.code for event in bench.trace.events if event.severity == "error"}
     assert bench.snapshot.rig in (RigState.RUNNING, RigState.HELD), bench.snapshot.reason
-    assert codes <= {"expired"}
+    assert codes <= {"expired", "stall"}
     if bench.snapshot.rig is RigState.HELD:
         check_stays_zero(bench.trace, check_zero(bench.trace, bench.electrics, fault))
-        check_announced(bench.trace, "expired", fault * 1e-3)
+        check_announced(bench.trace, *codes, fault * 1e-3)
         bench.go_on()
     check_limits(bench.trace.samples, bench.electrics)
 

@@ -198,6 +198,16 @@ def test_the_heat_follows_what_flows_and_goes_on_while_disarmed(bench: FaultBenc
     assert all(late < early for late, early in zip(bench.loop.coil_heat.shares, after, strict=True))
 
 
+def test_an_hour_of_sleep_cools_the_coils_however_much_they_carried_before_it(bench: FaultBench) -> None:
+    bench.walk()
+    bench.loop.coil_heat = CoilHeat((0.5, 0.5, 0.5))
+    bench.loop.tick(None, bench.now + 3600.0)
+    constants = bench.loop.parts.thermal.time_constants
+    assert bench.loop.coil_heat.shares == pytest.approx(
+        [0.5 * math.exp(-3600.0 / t) for t in constants], abs=5e-3
+    )
+
+
 def test_a_run_from_the_command_line_is_not_kept_from_walking_by_a_warning() -> None:
     """Warm coils are told of; they are no reason to say that the rig is not ready."""
     machine = build_machine(RigFile(), realtime=False)

@@ -5,7 +5,7 @@ import math
 import cv2
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 from scripted_scene import HEIGHT, OPTICS, SCENE, anywhere
 
@@ -30,6 +30,8 @@ def every_hue() -> np.ndarray:
 
 
 @given(st.integers(0, 360), st.integers(0, 360))
+@example(low=1, high=0)
+@example(low=360, high=359)
 def test_a_hue_range_holds_the_hues_between_its_ends_also_through_red(low: int, high: int):
     passes = ColourRange((low, high), (100, 255), (100, 255)).mask(every_hue())[0] > 0
     for step in range(HUE_STEPS):
