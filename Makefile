@@ -2,6 +2,9 @@
 SHELL := /bin/bash
 BIN := .venv/bin
 JOBS ?= 2
+# The browser goes before the tests that measure time: it would run beside them to the end.
+EVERY_TEST = $(BIN)/pytest -n $(JOBS) -m "not exclusive" && \
+	$(BIN)/pytest -m exclusive tests/browser && $(BIN)/pytest -m exclusive --ignore=tests/browser
 
 .PHONY: run setup test test-full lint format bench safety mutate clean browser toolchain help
 
@@ -14,13 +17,11 @@ run: .stamps/run ## open the dashboard of the simulated rig
 setup: .stamps/dev ## make the environment, with all that tests need
 
 test: .stamps/dev browser toolchain ## run every test
-	$(BIN)/pytest -n $(JOBS) -m "not exclusive"
-	$(BIN)/pytest -m exclusive
+	$(EVERY_TEST)
 
 test-full: export PIVOTRIG_FULL := 1
 test-full: .stamps/dev browser toolchain ## the same tests with the full numbers of repetitions
-	$(BIN)/pytest -n $(JOBS) -m "not exclusive"
-	$(BIN)/pytest -m exclusive
+	$(EVERY_TEST)
 
 lint: .stamps/dev ## style, types and the folder rules
 	$(BIN)/ruff check .
