@@ -126,9 +126,8 @@ class ControlLoop:
         if not (self._parts.simulated or consent):
             raise Refused(NEEDS_CONSENT)
         check_gait(gait, self._parts.limits)
-        self._require_fit()
+        self._energise(gait)
         self._gait = gait
-        self._energise()
         self._enter(state, "ready to start", "info")
 
     def disarm(self, reason: str = "disarmed by the operator") -> None:
@@ -212,8 +211,7 @@ class ControlLoop:
     def resume(self) -> None:
         """Go on after a hold, from where the robot is; raises `Refused` while the cause is there."""
         state = after(self._state, Event.RESUME)
-        pose = self._require_fit()
-        self._energise()
+        pose = self._energise(self._gait)
         self._vitals.guard.resumed(pose)
         if self._walk is None:
             self._enter(RigState.ARMED, "ready to start", "info")
@@ -301,17 +299,19 @@ class ControlLoop:
             raise Refused(NOT_SEEN)
         return self._pose
 
-    def _energise(self) -> None:
+    def _energise(self, gait: Gait) -> Pose:
+        """The arm edge, at the robot's pose; raises `Refused`."""
         pose = self._require_fit()
         if self._parts.actuation.stopped_from_outside:
             raise Refused("stopped; reset it first")
         self._vitals.energised(self._now)
         self._vitals.guard.energised(pose)
         try:
-            self._parts.actuation.start(self._now, pose, self._standing_on(), self._gait)
+            self._parts.actuation.start(self._now, pose, self._standing_on(), gait)
         except LinkError as error:
             self._stop_coils()
             raise Refused(str(error)) from error
+        return pose
 
     def _standing_on(self) -> Pivot:
         return PIVOT_A if self._walk is None else self._walk.walker.sweep.pivot

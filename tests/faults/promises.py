@@ -103,7 +103,9 @@ _PROMISES = (
     Promise("supply_off", "the supply is low or off", DISARMED, "supply", 2 * FRAME, 3 * FRAME),
     Promise("supply_low", "the supply is low or off", DISARMED, "supply", 2 * FRAME, 3 * FRAME),
     Promise("driver_fault", "the board reports: driver_fault", FAULT, "board", 2 * FRAME, 2),
-    Promise("coil_open", "which coil shows no current", DISARMED, "coil", 200, 201),
+    Promise(
+        "coil_open", "which coil shows no current", DISARMED, "coil", 200, 201, or_else=(HELD, "lost"),
+    ),
     Promise(
         "sense_dead", "which coil shows no current", DISARMED, "coil", 200, 201,
         overshoot=OVERSHOOT_UNSENSED,

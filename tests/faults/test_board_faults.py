@@ -34,8 +34,22 @@ def test_a_driver_fault_latches() -> None:
 
 
 def test_a_broken_lead_disarms_and_is_named() -> None:
-    """When a coil's lead comes off, the rig disarms after 0.1 s and names the coil."""
+    """When a coil's lead comes off, the rig disarms 0.1 s after that coil is asked for a current, and names it."""
     keeps_its_promise("coil_open")
+
+
+@pytest.mark.parametrize(("coil", "walked"), [("x", 0.55), ("x", 0.66), ("y", 0.22)])
+def test_a_robot_that_turns_wrongly_for_want_of_a_current_does_not_accuse_the_leads_of_being_exchanged(
+    bench: FaultBench, coil: str, walked: float
+) -> None:
+    """A coil without current lets the robot turn against its field; it is the missing current that you are told of."""
+    bench.walk()
+    bench.run_for(walked)
+    bench.inject("coil_open", coil=coil)
+    bench.run_for(0.8)
+    (event,) = (event for event in bench.trace.events if event.severity == "error")
+    assert event.code == "coil"
+    assert f"coil {coil} shows no current" in event.message
 
 
 def test_a_dead_current_sense_disarms_and_is_named() -> None:

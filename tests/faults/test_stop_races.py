@@ -58,6 +58,20 @@ def test_a_stop_that_comes_while_the_coils_are_switched_on_has_the_last_word(
     assert bench.snapshot.faults[0].code == "estop"
 
 
+def test_of_two_stops_the_first_cause_is_kept(bench: FaultBench) -> None:
+    """When the watchdog has stopped a controller that hangs, pressing STOP as well does not hide why."""
+    bench.until(lambda snapshot: not snapshot.faults)
+    bench.loop.estop("controller", "the controller hangs")
+    bench.loop.estop()
+    bench.tick()
+    bench.loop.latch_estop()
+    bench.tick()
+    assert (bench.snapshot.faults[0].code, bench.snapshot.reason) == ("controller", "the controller hangs")
+    bench.loop.reset()
+    bench.loop.estop()
+    assert bench.tick().faults[0].code == "estop"
+
+
 def test_arming_right_after_a_stop_is_refused(bench: FaultBench) -> None:
     """A stop by signal holds at once, before the next tick has told of it."""
     bench.until(lambda snapshot: not snapshot.faults)

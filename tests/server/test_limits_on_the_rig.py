@@ -153,6 +153,24 @@ def test_a_robot_beyond_the_hard_margin_is_without_current_and_can_be_driven_bac
     assert bench.world.body().pose.x < 0.0675
 
 
+def test_a_way_back_in_is_open_for_one_resume_only(bench: FaultBench) -> None:
+    """Whoever disarms a robot beyond the hard margin brings it back by hand."""
+    put(bench, 0.0675, 0.0, EAST)
+    bench.loop.arm(GAIT)
+    bench.run_for(0.5)
+    while bench.snapshot.rig is not RigState.HELD:
+        pose = bench.world.body().pose
+        bench.world.nudge(Pose(pose.x + 0.0001, pose.y, pose.heading))
+        bench.tick()
+    expect_no_current(bench)
+    bench.loop.resume()
+    assert bench.run_for(0.1).rig is RigState.ARMED
+    bench.loop.disarm()
+    bench.tick()
+    with pytest.raises(Refused, match="bring it back in"):
+        bench.loop.arm(GAIT)
+
+
 def test_a_disarmed_robot_beyond_the_hard_margin_is_put_back_by_hand(bench: FaultBench) -> None:
     put(bench, 0.070, 0.0, EAST)
     with pytest.raises(Refused, match="bring it back in"):

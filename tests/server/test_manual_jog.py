@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import pytest
 
 from control.controllers.manual import HOLD, Jog, Manual
+from control.gait import Gait
 from control.model import PIVOT_A, PIVOT_B, wrap
 from control.runs import RunRequest
 from control.safety import Refused
@@ -97,6 +98,19 @@ def test_a_jog_does_not_outlive_a_disarming(armed: Bench) -> None:
     armed.loop.disarm()
     armed.expect_no_current()
     assert armed.snapshot.command.rate == 0.0
+
+
+def test_a_rig_that_is_armed_again_at_once_does_not_go_on_with_the_old_jog(armed: Bench) -> None:
+    """A weak field is up before a jog is too old."""
+    armed.loop.jog(Jog(PIVOT_A, RATE))
+    armed.tick()
+    armed.loop.disarm()
+    armed.loop.arm(Gait(field=0.002))
+    for _ in range(10):
+        armed.tick()
+        assert armed.snapshot.rig is RigState.ARMED
+        assert (armed.snapshot.command.controller, armed.snapshot.command.rate) == ("", 0.0)
+    assert armed.loop.parts.field.is_ready
 
 
 @pytest.mark.parametrize("later", [HOLD + 1e-6, 10.0, -1.0, math.nan])
