@@ -1,4 +1,4 @@
-"""The boards that the contract's tests are run against."""
+"""The boards that the contract's tests are run against, and the twin and the core side by side."""
 
 from __future__ import annotations
 
@@ -6,6 +6,9 @@ from collections.abc import Iterator
 
 import pytest
 from board_contact import BoardContact, SteppedContact, real, stepped
+from twins import ARMING, CONFIGURE, Twins
+
+from control.link.messages import Hello
 
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
@@ -28,3 +31,23 @@ def any_board(request: pytest.FixtureRequest) -> Iterator[BoardContact]:
     port = request.config.getoption("--board")
     with real(str(port)) if request.param == "real" else stepped(request.param) as contact:
         yield contact
+
+
+@pytest.fixture
+def twins() -> Iterator[Twins]:
+    with Twins() as pair:
+        yield pair
+
+
+@pytest.fixture
+def ready(twins: Twins) -> Twins:
+    twins.say(Hello())
+    twins.say(CONFIGURE)
+    return twins
+
+
+@pytest.fixture
+def driving(ready: Twins) -> Twins:
+    ready.say(ARMING)
+    ready.run(20)
+    return ready

@@ -19,7 +19,7 @@ from core_library import compile_core
 
 HERE = Path(__file__).parent
 ROOT = HERE.parents[1]
-TESTS = ("test_firmware_core.py", "test_firmware_core_parts.py")
+TESTS = ("test_firmware_core.py", "test_firmware_core_obedience.py", "test_firmware_core_parts.py")
 
 
 @dataclass(frozen=True, slots=True)

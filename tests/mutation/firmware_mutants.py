@@ -18,7 +18,9 @@ from tests.mutation.firmware_rules import changed_lines
 ROOT = Path(__file__).parents[2]
 PORTABLE = SOURCES / "portable"
 ABI = ROOT / "tests" / "firmware" / "host" / "core_abi.cpp"
-TESTS = tuple(f"tests/firmware/test_firmware_core{part}.py" for part in ("", "_parts", "_exchanges"))
+TESTS = tuple(
+    f"tests/firmware/test_firmware_core{part}.py" for part in ("", "_obedience", "_parts", "_exchanges")
+)
 LONGEST_TEST = 60.0
 """A mutant that has not failed by then, s, runs in circles; the tests' own time limit would notice: killed."""
 
