@@ -18,7 +18,7 @@ THUMBNAIL = 16
 
 
 class Tracker(Protocol):
-    """Finds the robot in a frame; see `vision.tracking`."""
+    """Finds the robot in a frame; see `vision.tracking.tracker`."""
 
     def update(self, frame: Frame, expected: Expectation | None) -> Observation: ...
 

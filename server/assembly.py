@@ -36,11 +36,12 @@ from control.simulation.world import Board, World
 from server.data_folder import data_folder
 from server.seams import FaultySeams, Seams
 from server.settings import MM, MS, Coil, RegistrationSection, RigFile
-from vision.calibration import CameraModel
-from vision.cameras import open_camera
-from vision.detection import ColourRange, RegionFilter
-from vision.synthetic import AsFastAsItGoes, Pace, RealTime, SceneSettings, SyntheticCamera
-from vision.tracking import ColourTracker, TrackerSettings
+from vision.camera_model import CameraModel
+from vision.simulated.camera import AsFastAsItGoes, Pace, RealTime, SceneSettings, SyntheticCamera
+from vision.sources.opening import open_camera
+from vision.tracking.colour import ColourRange
+from vision.tracking.detection import RegionFilter
+from vision.tracking.tracker import ColourTracker, TrackerSettings
 
 FULL_FIELD = 0.010
 """The field that `link.field_ramp_ms` brings up, T."""

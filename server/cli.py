@@ -161,7 +161,7 @@ def _run(rig_file: RigFile, request: RunRequest, as_json: bool, *, consent: bool
     from server.assembly import build_machine
     from server.headless import run_headless
     from server.run_list import new_id
-    from vision.cameras import CameraError
+    from vision.sources.opening import CameraError
 
     try:
         machine = build_machine(rig_file, realtime=not rig_file.is_simulated)

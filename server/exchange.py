@@ -12,7 +12,7 @@ from control.safety import Refused
 from control.snapshot import RigState
 from server.assembly import Machine, build_machine
 from server.settings import RigFile
-from vision.cameras import CameraError
+from vision.sources.opening import CameraError
 
 log = logging.getLogger(__name__)
 

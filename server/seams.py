@@ -15,7 +15,7 @@ from control.simulation.faults.points import Decisions, FaultPoints, Nominal, Re
 from control.simulation.line_faults import LineFaults
 from control.simulation.world import World
 from server.settings import RigFile
-from vision.synthetic import SyntheticCamera
+from vision.simulated.camera import SyntheticCamera
 
 Clock = Callable[[], float]
 

@@ -27,7 +27,7 @@ from server.rig_changes import RigChanges
 from server.rig_file import RigStore
 from server.settings import RigFile
 from server.signals import ESTOP, handled
-from vision.cameras import CameraError
+from vision.sources.opening import CameraError
 
 GRACE = 2
 """Seconds that open streams get at shutdown; the coils are zero long before."""

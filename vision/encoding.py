@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import cv2
 
-from vision.detection import Image
+from vision.tracking.colour import Image
 
 JPEG_QUALITY = 80
 """Of 100: 40 to 70 kB for a noisy 640x480 picture, edges still sharp."""

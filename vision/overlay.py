@@ -11,7 +11,7 @@ from cv2.typing import MatLike
 from numpy.typing import NDArray
 
 from control.model import PIVOT_A, PIVOT_B, Observation, Pivot, Pose, Tracking, pivot_point
-from vision.calibration import CameraModel
+from vision.camera_model import CameraModel
 
 # Okabe and Ito's palette, told apart with every kind of colour vision; BGR. Shapes differ as well.
 REFERENCE = (233, 180, 86)

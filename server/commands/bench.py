@@ -40,7 +40,7 @@ JsonOption = Annotated[bool, typer.Option("--json", help="One JSON object on std
 @contextmanager
 def explained() -> Iterator[None]:
     """What can go wrong on a bench ends the command with its reason."""
-    from vision.cameras import CameraError
+    from vision.sources.opening import CameraError
 
     try:
         yield

@@ -15,7 +15,7 @@ from server.diagnosis.check import Check, problem
 from server.diagnosis.ports import is_device
 from server.exchange import without_traffic_log
 from server.settings import RigFile
-from vision.cameras import CameraError, open_camera
+from vision.sources.opening import CameraError, open_camera
 
 PAUSE = 5e-3
 """Between two looks at a real port, s."""

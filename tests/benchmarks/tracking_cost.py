@@ -13,9 +13,9 @@ from control.estimator import Estimator, EstimatorSettings
 from control.field_model import FieldModel
 from control.model import Body, Frame, Pose
 from control.simulation.plant import build_plant
-from vision.calibration import CameraModel
-from vision.rendering import Painter, SceneSettings
-from vision.tracking import ColourTracker, TrackerSettings
+from vision.camera_model import CameraModel
+from vision.simulated.rendering import Painter, SceneSettings
+from vision.tracking.tracker import ColourTracker, TrackerSettings
 
 REPEATS = 400
 

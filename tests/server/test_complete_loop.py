@@ -17,7 +17,7 @@ from control.snapshot import RigState, Snapshot
 from control.trajectories import Circle, OutsideWorkspace, trajectories
 from server.assembly import Machine, build_machine
 from server.settings import RigFile
-from vision.synthetic import Disturbance, SyntheticCamera
+from vision.simulated.camera import Disturbance, SyntheticCamera
 
 GAIT = Gait(sweep=math.radians(10.0), tilt=math.radians(25.0))
 EIGHT = Selection(Choice("geometric"), Choice("eight"), GAIT)

@@ -19,7 +19,7 @@ from server.commands.calibrate_registration import Picture, at_the_centre, turn
 from server.headless import run_headless
 from server.rig_file import load_rig_file
 from server.settings import RigFile
-from vision.synthetic import SyntheticCamera
+from vision.simulated.camera import SyntheticCamera
 
 TRUE = {"x_mm": 6.0, "y_mm": -4.0, "rotation_deg": 14.0, "magnet_reversed": False}
 SETTINGS = BenchSettings(time_to_live=0.15, field_slew=0.01 / 0.3, max_field=0.015)

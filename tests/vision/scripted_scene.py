@@ -8,8 +8,8 @@ from collections.abc import Callable
 import numpy as np
 
 from control.model import PIVOT_A, PIVOT_B, Body, Pose
-from vision.calibration import CameraModel
-from vision.rendering import SceneSettings
+from vision.camera_model import CameraModel
+from vision.simulated.rendering import SceneSettings
 
 OPTICS = CameraModel.looking_down()
 SCENE = SceneSettings(seed=7)

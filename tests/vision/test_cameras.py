@@ -7,7 +7,7 @@ import cv2
 import numpy as np
 import pytest
 
-from vision.cameras import CameraError, DeviceCamera, open_camera
+from vision.sources.opening import CameraError, DeviceCamera, open_camera
 
 SIZE = (64, 48)
 RATE = 25.0

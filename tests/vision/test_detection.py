@@ -9,9 +9,10 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 from scripted_scene import HEIGHT, OPTICS, SCENE, anywhere
 
-from vision.detection import HUE_STEPS, Blob, ColourError, ColourRange, RegionFilter, detect, find
-from vision.rendering import Painter
-from vision.tracking import RED
+from vision.simulated.rendering import Painter
+from vision.tracking.colour import HUE_STEPS, ColourError, ColourRange
+from vision.tracking.detection import Blob, RegionFilter, detect, find
+from vision.tracking.tracker import RED
 
 WHOLE = (0, 0, 640, 480)
 REGION = RegionFilter(200.0, 1200.0)

@@ -11,8 +11,8 @@ from control.model import PIVOT_A, PIVOT_B, Body, Expectation, Frame, Pose, pivo
 from vision import overlay
 from vision.encoding import encode_jpeg
 from vision.overlay import Drawing, draw_overlay
-from vision.rendering import Painter
-from vision.tracking import ColourTracker, TrackerSettings
+from vision.simulated.rendering import Painter
+from vision.tracking.tracker import ColourTracker, TrackerSettings
 
 BODY = Body(Pose(0.0, 0.0, 0.3), PIVOT_A, 0.0)
 PICTURE = Painter(OPTICS, SCENE).paint(BODY, 0)

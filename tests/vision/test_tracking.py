@@ -8,8 +8,8 @@ import pytest
 from scripted_scene import HEIGHT, LENGTH, OPTICS, SCENE, anywhere
 
 from control.model import PIVOT_A, Body, Expectation, Frame, Observation, Pose, Tracking, wrap
-from vision.rendering import Painter
-from vision.tracking import ColourTracker, TrackerSettings
+from vision.simulated.rendering import Painter
+from vision.tracking.tracker import ColourTracker, TrackerSettings
 
 PERIOD = 1 / 60
 PAINTER = Painter(OPTICS, SCENE)

@@ -19,7 +19,7 @@ pivot that no robot has."""
 
 
 class CameraSwitches(Protocol):
-    """What can be wrong with the pictures; `vision.synthetic.Disturbance` is one."""
+    """What can be wrong with the pictures; `vision.simulated.camera.Disturbance` is one."""
 
     hidden: bool
     frozen: bool

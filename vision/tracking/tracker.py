@@ -17,8 +17,9 @@ from control.model import (
     Tracking,
     wrap,
 )
-from vision.calibration import CameraModel
-from vision.detection import Blob, Candidate, ColourRange, Image, RegionFilter, Window, find, measure
+from vision.camera_model import CameraModel
+from vision.tracking.colour import ColourRange, Image
+from vision.tracking.detection import Blob, Candidate, RegionFilter, Window, find, measure
 
 RED = ColourRange(hue=(340, 20), saturation=(110, 255), value=(60, 255))
 """The shipped robot's colour: red in any light that leaves it a third of full brightness."""

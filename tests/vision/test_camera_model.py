@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scripted_scene import OPTICS
 
-from vision.calibration import CalibrationError, CameraModel
+from vision.camera_model import CalibrationError, CameraModel
 
 STRONG_LENS = CameraModel.looking_down(tilt=(0.1, -0.15), distortion=(-0.3, 0.09, 0.002, -0.001, -0.01))
 place = st.floats(-0.065, 0.065)

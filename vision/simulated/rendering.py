@@ -15,7 +15,7 @@ from cv2.typing import MatLike
 from numpy.typing import NDArray
 
 from control.model import Body, opposite, pivot_point
-from vision.calibration import CameraModel
+from vision.camera_model import CameraModel
 
 Image = MatLike
 """A picture (height, width, 3), uint8, BGR."""

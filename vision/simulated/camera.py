@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from control.model import Body, Frame
-from vision.calibration import CameraModel
-from vision.rendering import Painter, SceneSettings
+from vision.camera_model import CameraModel
+from vision.simulated.rendering import Painter, SceneSettings
 
 __all__ = ["AsFastAsItGoes", "Disturbance", "Pace", "RealTime", "SceneSettings", "SyntheticCamera", "World"]
 

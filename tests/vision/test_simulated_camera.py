@@ -9,8 +9,8 @@ import pytest
 from scripted_scene import OPTICS, SCENE, ScriptedWorld, circling
 
 from control.model import Frame
-from vision.rendering import Painter
-from vision.synthetic import AsFastAsItGoes, RealTime, SyntheticCamera
+from vision.simulated.camera import AsFastAsItGoes, RealTime, SyntheticCamera
+from vision.simulated.rendering import Painter
 
 TIMEOUT = 0.1
 

@@ -1,0 +1,1 @@
+"""From a picture to the robot in it: colour, blobs, sub-pixel pose, identity."""
