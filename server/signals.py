@@ -6,7 +6,7 @@ Handlers run on the main thread between two of its instructions; stopping the co
 from __future__ import annotations
 
 import signal
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from types import FrameType
 
@@ -19,7 +19,7 @@ Handler = Callable[[int, FrameType | None], None]
 
 
 @contextmanager
-def handled(handlers: dict[signal.Signals, Handler]) -> Iterator[None]:
+def handled(handlers: Mapping[signal.Signals, Handler | signal.Handlers]) -> Iterator[None]:
     """These handlers while it lasts, the former ones afterwards; on the main thread only."""
     before = {number: signal.signal(number, handler) for number, handler in handlers.items()}
     try:

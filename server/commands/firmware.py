@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import signal
 import subprocess
 import sys
 import time
@@ -13,6 +14,7 @@ from typing import TYPE_CHECKING, Annotated, NoReturn
 import typer
 
 from server.commands.outcome import FAILED, REFUSED, USAGE, console, fail
+from server.signals import handled
 
 if TYPE_CHECKING:
     from control.firmware.build import Build
@@ -181,8 +183,12 @@ def _given(folder: Path | None) -> tuple[Path, ...]:
 
 
 def _run_until_interrupted(command: list[str]) -> NoReturn:
-    """The child prints the greeting line, and ends when its standard input is closed, at our end at the latest."""
+    """The child prints the greeting line, and ends when its standard input is closed, at our end at the latest.
+
+    An interrupt ends it also where a shell has started it in the background, which has Python ignore interrupts.
+    """
     with (
+        handled({signal.SIGINT: signal.default_int_handler}),
         subprocess.Popen([*command, "--end-with-stdin"], stdin=subprocess.PIPE) as process,
         suppress(KeyboardInterrupt),
     ):

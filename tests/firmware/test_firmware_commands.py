@@ -21,6 +21,7 @@ from control.link.probe import BAUD
 from control.simulation.lockstep import RemoteBoard
 from server.cli import app
 from server.commands.firmware import MOST_SHARE
+from server.signals import handled
 from tests.processes import poll, started
 
 AVRDUDE = """#!/bin/sh
@@ -166,6 +167,13 @@ def test_emulate_offers_a_board_until_it_is_interrupted(way: signal.Signals) -> 
             process.send_signal(way)
             assert process.wait(10) == (0 if way is signal.SIGINT else -signal.SIGTERM)
         poll(lambda: refuses(found[2]), bool)
+
+
+def test_emulate_is_interrupted_also_where_its_parent_ignores_interrupts() -> None:
+    """A shell starts what runs in the background like that."""
+    with handled({signal.SIGINT: signal.SIG_IGN}), started("server", "firmware", "emulate") as (process, _):
+        process.send_signal(signal.SIGINT)
+        assert process.wait(10) == 0
 
 
 def refuses(control: str) -> bool:
