@@ -78,7 +78,10 @@ class Health:
     """What is known at one instant; times and ages in s, None or inf for what never came.
 
     tick_gap: since the last tick.  frame_age: since the newest frame arrived.  frame_delay: from its
-    capture to now.  frame_problem: why the newest picture is not one of this rig's camera, "" if it is.
+    capture to now.  camera_trouble: why none can come, "" when one could.  frame_problem: why the newest
+    picture is not one of this rig's camera, "" if it is.  calibration_problem: why the saved calibration is not
+    this camera's, "" if it is.
+    tracking_reason: why the robot is not seen, "" where that is not known.
     reach_limit: half side of the square that the robot's centre must keep now, m.
     turned_away: how far the body has turned against the field, rad.  stuck_age: since a sweep was given up.
     link_ready: greeted and configured.  link_reason: why it is not.  link_incident: how the conversation with
@@ -115,6 +118,9 @@ class Health:
     coil_heat: Vector
     is_too_hot: bool
     heat_wait: float
+    camera_trouble: str = ""
+    calibration_problem: str = ""
+    tracking_reason: str = ""
 
 
 def assess(health: Health, limits: Limits) -> tuple[Finding, ...]:
@@ -148,10 +154,12 @@ def _loop(health: Health) -> Iterator[Finding]:
 
 
 def _camera(health: Health) -> Iterator[Finding]:
+    if health.calibration_problem:
+        yield Finding(Severity.DISARM, "calibration", health.calibration_problem)
     if health.frame_problem:
         yield Finding(Severity.DISARM, "frame", health.frame_problem)
     elif not health.frame_age <= FRAME_STALE:
-        yield Finding(Severity.HOLD, "camera", f"no frame {_for(health.frame_age)}")
+        yield Finding(Severity.HOLD, "camera", health.camera_trouble or f"no frame {_for(health.frame_age)}")
     elif not health.identical_frames < FROZEN_FRAMES:
         message = f"the camera repeats one picture ({health.identical_frames} times)"
         yield Finding(Severity.HOLD, "frozen", message)
@@ -164,7 +172,10 @@ def _camera(health: Health) -> Iterator[Finding]:
 def _robot(health: Health, limits: Limits) -> Iterator[Finding]:
     pose = health.pose
     if health.tracking is Tracking.LOST or not health.tracking_age <= PREDICT_FOR:
-        yield Finding(Severity.HOLD, "lost", "the robot is not seen, or not where it should be")
+        message = "the robot is not seen, or not where it should be"
+        if health.tracking_reason:
+            message += f": {health.tracking_reason}"
+        yield Finding(Severity.HOLD, "lost", message)
     elif pose is None or not pose.is_finite:
         yield Finding(Severity.HOLD, "lost", "the robot's pose is not known")
     elif not reach(pose) <= health.reach_limit:

@@ -11,13 +11,13 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from filterpy.kalman import ExtendedKalmanFilter
 from numpy.typing import NDArray
 
 from control.backlash import ENGAGED_AFTER
 from control.field_model import FieldModel, Turn
 from control.gait_model import GaitModel
-from control.model import PIVOT_A, PIVOT_B, Expectation, Measurement, Pivot, Pose, body_tilt, swing, wrap
+from control.model import PIVOT_A, PIVOT_B, Expectation, Measurement, Pivot, Pose, body_tilt, swing
+from control.pivot_filter import PivotFilter
 from control.snapshot import Vector
 
 GATE = 16.27
@@ -89,17 +89,6 @@ class Grip:
         return Grip(slack, pull, turn.pivot, follows + (self.turned if turn.pivot == self.pivot else 0.0))
 
 
-class PivotFilter(ExtendedKalmanFilter):
-    """filterpy's filter whose prediction of the mean is the exact arc instead of a matrix product."""
-
-    def __init__(self) -> None:
-        super().__init__(dim_x=3, dim_z=3)
-        self.arrival = np.zeros(3)
-
-    def predict_x(self, u: object = 0) -> None:  # noqa: ARG002 (filterpy's signature)
-        self.x = self.arrival
-
-
 class Estimator:
     """Feed it every frame: `expect` before the search, `correct` after it, `carry` for the pose now."""
 
@@ -107,9 +96,8 @@ class Estimator:
         self._settings = settings
         self._field = field
         self._length = length
-        self._filter = PivotFilter()
-        self._filter.R = np.diag(
-            [settings.measured_position**2, settings.measured_position**2, settings.measured_heading**2]
+        self._filter = PivotFilter(
+            np.diag([settings.measured_position**2] * 2 + [settings.measured_heading**2])
         )
         self._time = -math.inf
         self._grip = Grip()
@@ -142,34 +130,31 @@ class Estimator:
             return None
         motion = self._motion(self._time, time)
         pose, self._grip = motion.arrival, motion.grip
-        self._filter.arrival = np.array([pose.x, pose.y, pose.heading])
-        self._filter.F = motion.jacobian()
-        self._filter.Q = motion.noise()
-        self._filter.predict()
+        self._filter.move(pose, (motion.dx, motion.dy), (motion.position_noise, motion.heading_noise))
         self._time = time
         at = time - self._settings.actuation_delay
         elevation = self._field.elevation_at(at)
         lift_ratio = self._settings.lift_ratio * self._field.strength_at(at) / LIFT_FIELD
         return Expectation(
             pose,
-            position_sigma=math.sqrt(max(self._filter.P[0, 0], self._filter.P[1, 1])),
+            position_sigma=self.position_sigma,
             pivot=PIVOT_B if elevation > 0.0 else PIVOT_A,
             tilt=body_tilt(abs(elevation), lift_ratio),
+            heading_sigma=math.sqrt(max(self._filter.P[2, 2], 0.0)),
         )
 
     def correct(self, measurement: Measurement) -> bool:
         """Fuse a sighting made at the time of the last `expect`; False when the gate refuses it."""
         z = np.array([measurement.pose.x, measurement.pose.y, measurement.pose.heading])
-        if not np.isfinite(z).all() or not self.distance(z) <= GATE:
+        if not measurement.pose.is_finite or not self._filter.innovate(z) <= GATE:
             return False
-        self._filter.update(z, _jacobian_of_sighting, _sighting, residual=_residual)
+        self._filter.fuse()
         self.last_accepted = measurement.captured_at
         return True
 
     def distance(self, z: NDArray[np.float64]) -> float:
         """Squared Mahalanobis distance of a sighting (x, y, heading) from the prediction."""
-        residual = _residual(z, self._filter.x)
-        return float(residual @ np.linalg.solve(self._filter.P + self._filter.R, residual))
+        return self._filter.innovate(z)
 
     @property
     def grip(self) -> Grip:
@@ -180,7 +165,7 @@ class Estimator:
         """The estimate carried forward to `time` (s) through what the field has done since."""
         motion = self._motion(self._time, time)
         (xx, _, xh), (_, yy, yh), (_, _, hh) = self._filter.P.tolist()
-        # The diagonal of F P F' + Q, with F as in `Motion.jacobian`.
+        # The diagonal of F P F' + Q, with F as in `PivotFilter.move`.
         variances = (
             xx - 2.0 * motion.dy * xh + motion.dy**2 * hh + motion.position_noise,
             yy + 2.0 * motion.dx * yh + motion.dx**2 * hh + motion.position_noise,
@@ -188,6 +173,11 @@ class Estimator:
         )
         x, y, heading = (math.sqrt(max(variance, 0.0)) for variance in variances)
         return Carried(motion.arrival, (x, y, heading))
+
+    @property
+    def position_sigma(self) -> float:
+        """Standard deviation of the position at the filter's own time, along the worse axis, m."""
+        return math.sqrt(max(self._filter.P[0, 0], self._filter.P[1, 1], 0.0))
 
     @property
     def covariance(self) -> NDArray[np.float64]:
@@ -231,14 +221,6 @@ class Motion:
     position_noise: float
     heading_noise: float
 
-    def jacobian(self) -> NDArray[np.float64]:
-        """d(arrival)/d(departure): the displacement is fixed in the body's frame, so it turns with the heading."""
-        return np.array([[1.0, 0.0, -self.dy], [0.0, 1.0, self.dx], [0.0, 0.0, 1.0]])
-
-    def noise(self) -> NDArray[np.float64]:
-        """Covariance of the process noise, (3, 3)."""
-        return np.diag([self.position_noise, self.position_noise, self.heading_noise])
-
 
 class _Noise:
     """Process noise gathered along one piece of motion."""
@@ -255,17 +237,3 @@ class _Noise:
 
     def switch(self) -> None:
         self.position += self._settings.slip**2
-
-
-def _sighting(x: NDArray[np.float64]) -> NDArray[np.float64]:
-    return x
-
-
-def _jacobian_of_sighting(_: NDArray[np.float64]) -> NDArray[np.float64]:
-    return np.eye(3)
-
-
-def _residual(z: NDArray[np.float64], predicted: NDArray[np.float64]) -> NDArray[np.float64]:
-    residual = z - predicted
-    residual[2] = wrap(residual[2])
-    return residual

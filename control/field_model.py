@@ -212,10 +212,14 @@ class FieldModel:
 
     def turns(self, start: float, end: float) -> list[Turn]:
         """The pieces of motion between two recent instants (s), oldest first."""
-        inner = [corner for corner in self._corners if corner.time > start]
+        inner: list[Corner] = []
+        for corner in reversed(self._corners):
+            if corner.time <= start:
+                break
+            inner.append(corner)
         pieces: list[Turn] = []
         heading = self.heading_at(start)
-        for corner in inner:
+        for corner in reversed(inner):
             if corner.time >= end:
                 pieces.append(Turn(self.heading_at(end) - heading, corner.pivot))
                 break

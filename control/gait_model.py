@@ -22,6 +22,7 @@ class GaitUncertainty:
     backlash: float
     heading_offset: float
     lag: float
+    skew: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,6 +37,7 @@ class GaitModel:
     backlash: play between the field's heading and the body's, full width, rad.
     heading_offset: of the field's heading beyond the seen one, in the middle of the play, rad.
     lag: the body comes after the field by this time while it is pulled along, beyond the known actuation delay, s.
+    skew: of the body's heading, as its pivots have it, beyond the seen one, rad.
     uncertainty: None where the figures were not identified.
     """
 
@@ -47,6 +49,7 @@ class GaitModel:
     backlash: float = 0.0
     heading_offset: float = 0.0
     lag: float = 0.0
+    skew: float = 0.0
     uncertainty: GaitUncertainty | None = None
 
     def forward(self, turn: float) -> float:

@@ -39,7 +39,7 @@ LONGEST_SWITCH = 0.4
 FEWEST_SWITCHES = 8
 BLOCKS = 20
 """Of the jackknife: neighbouring turns share their switches, so they are left out together."""
-_FIGURES = ("length", "out", "forward_base", "forward_per_sweep", "backlash", "heading_offset", "lag")
+_FIGURES = ("length", "out", "forward_base", "forward_per_sweep", "backlash", "heading_offset", "lag", "skew")
 
 
 class TooLittle(ValueError):
@@ -119,7 +119,7 @@ def identify(samples: Sequence[Sample], switch_time: float = 0.0) -> GaitModel:
 def _uncertainty(length: float, errors: Array) -> GaitUncertainty:
     """The walk's own scatter, and what the camera may get wrong in the same way all along."""
     scale, turn = CAMERA_SCALE * length, CAMERA_HEADING
-    of_camera = np.array([scale, scale, turn * length, 0.0, 2.0 * turn, turn, 0.0])
+    of_camera = np.array([scale, scale, turn * length, 0.0, 2.0 * turn, turn, 0.0, turn])
     return GaitUncertainty(**dict(zip(_FIGURES, np.hypot(errors, of_camera).tolist(), strict=True)))
 
 
@@ -174,7 +174,7 @@ def _columns(samples: list[Sample]) -> tuple[Array, Array, Array]:
 
 
 def _figures(stands: Sequence[Stand]) -> Array:
-    """The seven of `_FIGURES` from some of the turns; raises `TooLittle`."""
+    """All of `_FIGURES` from some of the turns; raises `TooLittle`."""
     arm = _fit_arm(stands)
     switches = [_switch(*pair, arm) for pair in itertools.pairwise(stands) if _is_switch(*pair)]
     if len(switches) < FEWEST_SWITCHES:
@@ -184,7 +184,7 @@ def _figures(stands: Sequence[Stand]) -> Array:
         )
     outs, forwards, turns = np.array(switches).T
     base, per_sweep = _solve(np.column_stack([np.ones_like(turns), turns]), forwards)
-    return np.array([arm.length, outs.mean(), base, per_sweep, *_play(stands)])
+    return np.array([arm.length, outs.mean(), base, per_sweep, *_play(stands), arm.skew])
 
 
 def _play(stands: Sequence[Stand]) -> tuple[float, float, float]:

@@ -46,6 +46,7 @@ def snapshot_of(instant: Instant, parts: Parts, vitals: Vitals, timing: TimingLo
         pose_sigma=instant.pose_sigma,
         observation=perception.observation,
         tracking=perception.tracking,
+        tracking_reason=perception.reason,
         tracking_age=perception.age,
         command=actuation.command,
         reference=reference,
@@ -58,6 +59,7 @@ def snapshot_of(instant: Instant, parts: Parts, vitals: Vitals, timing: TimingLo
         refusals=vitals.refusals,
         body_tilt=parts.body_tilt(abs(telemetry.elevation)) if is_energised and telemetry else 0.0,
         run=walk.progress(instant.state is RigState.HELD) if walk is not None else None,
+        camera=vitals.frames.figures,
         timing=timing.figures(),
         link=parts.link.status,
     )

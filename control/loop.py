@@ -145,6 +145,10 @@ class ControlLoop:
             self._outside = code, reason
         self._parts.actuation.stop_from_outside()
 
+    def forget_robot(self) -> None:
+        """Look for the robot as at the start; only for a rig that drives nothing."""
+        self._parts.perception.forget()
+
     def latch_estop(self) -> None:
         """Enter the fault state after an `estop`; keeps the first cause of a fault that is on already."""
         if self._state is not RigState.FAULT:

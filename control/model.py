@@ -91,11 +91,20 @@ class Frame:
 
 
 @dataclass(frozen=True, slots=True)
+class CameraNote:
+    """What a camera has to tell, in the operator's words. severity: "info" or "warn"."""
+
+    severity: str
+    message: str
+
+
+@dataclass(frozen=True, slots=True)
 class Expectation:
     """Where the estimator expects the robot in the frame that is about to be searched.
 
     pose: predicted pose at the frame's capture time.
-    position_sigma: one standard deviation of the position, m.
+    position_sigma, heading_sigma: one standard deviation of the position, m, and of the heading, rad; pi when the
+    heading is anybody's guess.
     pivot, tilt: the end expected to be pressed down, and the elevation of the other one above the plate, rad:
     a raised end is nearer to the camera, which would otherwise turn and shift the measured pose.
     """
@@ -104,6 +113,7 @@ class Expectation:
     position_sigma: float
     pivot: Pivot = PIVOT_A
     tilt: float = 0.0
+    heading_sigma: float = math.pi
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,11 +137,15 @@ class Observation:
     """What the tracker makes of one frame.
 
     window: the searched region (u0, v0, u1, v1), px; the whole frame when there was nothing to expect.
+    reason: why there is no measurement, in the operator's words; "" with one.
+    rivals: (u, v) of other blobs that look like the robot, px.
     """
 
     tracking: Tracking
     measurement: Measurement | None
     window: tuple[int, int, int, int]
+    reason: str = ""
+    rivals: tuple[tuple[float, float], ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

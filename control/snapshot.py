@@ -62,6 +62,17 @@ class Timing:
 
 
 @dataclass(frozen=True, slots=True)
+class CameraTiming:
+    """latency: from mid-exposure, as far as it is known, until the frame is here, s.  rate: frames/s.
+
+    None before there are frames.
+    """
+
+    latency: float | None = None
+    rate: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
 class LinkCounts:
     """What went over the link since the program began, in messages.
 
@@ -137,6 +148,7 @@ class Snapshot:
     time: rig time of this tick, s.  captured_at: capture time of the newest frame, s, None before the first one.
     pose: the estimate carried forward to `time`; None while the robot has not been found.
     pose_sigma: its standard deviations (m, m, rad).
+    tracking_reason: why there is no lock, in the operator's words; "" with one.
     tracking_age: time since the last accepted measurement, s (inf before the first one).
     reference: the desired point, m, while a run is on.  error: distance from the pose to it, m.
     currents, measured_currents: commanded and sensed coil currents, A.  field: the field that the
@@ -155,6 +167,7 @@ class Snapshot:
     pose_sigma: Vector
     observation: Observation | None
     tracking: Tracking
+    tracking_reason: str
     tracking_age: float
     command: Command
     reference: tuple[float, float] | None
@@ -167,5 +180,6 @@ class Snapshot:
     refusals: Refusals
     body_tilt: float
     run: RunProgress | None
+    camera: CameraTiming
     timing: Timing
     link: LinkStatus

@@ -8,6 +8,7 @@ from control.acceptance import frame_problem, is_sound
 from control.arbiter import LOOP_STALL, TELEMETRY_STALE, Finding, Health, Severity, assess
 from control.coil_heat import UNKNOWN, CoilHeat
 from control.current_check import AGREED, compare
+from control.frame_log import FrameLog
 from control.link.conversion import BoardState, Telemetry
 from control.model import Frame, Pose
 from control.parts import Parts
@@ -38,6 +39,7 @@ class Vitals:
         self._stuck_at = -math.inf
         self.guard = WorkspaceGuard(parts.limits.soft, parts.limits.hard, parts.length)
         self.heat = CoilHeat() if parts.simulated else UNKNOWN
+        self.frames = FrameLog()
         self.telemetry: Telemetry | None = None
         self.findings: tuple[Finding, ...] = ()
 
@@ -48,6 +50,7 @@ class Vitals:
             self._refused_frames += 1
             return False
         self._frame_at = now
+        self.frames.came(frame.captured_at, now)
         return True
 
     def saw(self, state: RigState, now: float) -> None:
@@ -179,6 +182,7 @@ class Vitals:
             frame_problem=self._frame_problem,
             identical_frames=perception.identical_frames,
             tracking=perception.tracking,
+            tracking_reason=perception.reason,
             tracking_age=perception.age,
             pose=pose,
             reach_limit=self.guard.hard_limit,
@@ -198,4 +202,6 @@ class Vitals:
             coil_heat=self.heat.shares,
             is_too_hot=self.heat.is_too_hot,
             heat_wait=self.heat.wait(self._parts.thermal),
+            camera_trouble=self._parts.camera_trouble(),
+            calibration_problem=self._parts.calibration_problem(),
         )

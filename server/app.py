@@ -14,7 +14,10 @@ from starlette.responses import FileResponse
 import web
 from server.api import (
     actions,
+    calibration,
+    calibration_runs,
     camera,
+    cameras,
     controllers,
     faults,
     manual,
@@ -23,12 +26,16 @@ from server.api import (
     rig_file,
     runs,
     selection,
+    simulated_board,
     state,
     telemetry,
     trajectories,
+    vision,
 )
 from server.api.schemas import MM
 from server.api.ticks import TickText
+from server.calibration_runs import CalibrationRuns
+from server.camera_calibration import CameraCalibration
 from server.door import Door
 from server.fresh_files import ALWAYS_ASK, FreshFiles
 from server.pictures import Pictures
@@ -62,9 +69,14 @@ ROOMS = (
     trajectories,
     runs,
     camera,
+    cameras,
+    calibration,
+    calibration_runs,
+    simulated_board,
     telemetry,
     faults,
     ports,
+    vision,
 )
 """One router a resource."""
 
@@ -85,6 +97,8 @@ def create_app(rig: Rig, hosts: Collection[str] = (), changes: RigChanges | None
     app.state.rig = rig
     app.state.rig_changes = changes
     app.state.pictures = Pictures(rig)
+    app.state.camera_calibration = CameraCalibration(rig)
+    app.state.calibration_runs = CalibrationRuns(rig)
     app.state.tick_text = TickText()
     app.state.scene = SceneFeed(rig, lambda: scene_geometry(rig))
     app.add_middleware(Door, hosts=hosts)
@@ -108,6 +122,7 @@ async def lifespan(app: FastAPI) -> AsyncIterator[None]:
         try:
             await rig.stop()
         finally:
+            await app.state.calibration_runs.stop()
             if changes is not None:
                 await changes.stop()
             end_streams(app)

@@ -34,14 +34,15 @@ from control.simulation.plant import build_plant
 from control.simulation.wiring import Wiring
 from control.simulation.world import Board, World
 from server.data_folder import data_folder
+from server.optics import assumed_model, calibration_problem, model_in_use
 from server.seams import FaultySeams, Seams
-from server.settings import MM, MS, Coil, RegistrationSection, RigFile
+from server.settings import MM, MS, CameraSection, Coil, RegistrationSection, RigFile
+from server.vision_settings import tracker_settings
 from vision.camera_model import CameraModel
 from vision.simulated.camera import AsFastAsItGoes, Pace, RealTime, SceneSettings, SyntheticCamera
-from vision.sources.opening import open_camera
-from vision.tracking.colour import ColourRange
-from vision.tracking.detection import RegionFilter
-from vision.tracking.tracker import ColourTracker, TrackerSettings
+from vision.simulated.scenes import SCENES
+from vision.sources.opening import CameraRequest, open_camera
+from vision.tracking.tracker import ColourTracker
 
 FULL_FIELD = 0.010
 """The field that `link.field_ramp_ms` brings up, T."""
@@ -72,8 +73,13 @@ class Machine:
     faults: Faults | None
     traffic: TrafficLog | None
 
-    def open(self, *, patiently: bool = False) -> None:
-        """Open the link; raises `LinkError`, unless a board that is not there is waited for `patiently`."""
+    def open(self, *, patiently: bool = False, camera_may_come: bool = False) -> None:
+        """Wait for the camera and open the link; raises `CameraError` and `LinkError`.
+
+        patiently: a board that is not there is waited for in the background.  camera_may_come: so is a camera.
+        """
+        if not camera_may_come:
+            self.camera.require()
         self.link.open(patiently=patiently)
 
     def stop_coils(self) -> None:
@@ -98,7 +104,7 @@ def build_machine(settings: RigFile, *, realtime: bool, data: Path | None = None
     """
     coils = coil_set(settings)
     _check_field_slew(settings, coils)
-    model = _camera_model(settings)
+    model = model_in_use(settings.camera)
     tracker = _tracker(settings, model)
     with ExitStack() as devices:
         world, port = (
@@ -106,12 +112,12 @@ def build_machine(settings: RigFile, *, realtime: bool, data: Path | None = None
         )
         if world is not None:
             devices.callback(world.close)
-        camera = _camera(settings, model, world, realtime)
+        camera = _camera(settings, world, realtime)
         devices.callback(camera.close)
         seams = _seams(settings, world, camera)
         link = seams.link(port, settings.link.baud, board_configuration(settings), camera.now)
         traffic = _traffic(settings, link, camera, data)
-        parts = _parts(settings, coils, link, seams.tracker(tracker), seams, simulated=world is not None)
+        parts = _parts(settings, coils, link, seams.tracker(tracker), seams, camera)
         loop = ControlLoop(parts, time.perf_counter, camera.now())
         faults = seams.faults(camera.now, loop)
         devices.pop_all()  # the machine closes them from now on
@@ -134,7 +140,7 @@ def _seams(settings: RigFile, world: World | None, camera: Camera) -> Seams:
 
 
 def _parts(
-    settings: RigFile, coils: CoilSet, link: Link, tracker: Tracker, seams: Seams, *, simulated: bool
+    settings: RigFile, coils: CoilSet, link: Link, tracker: Tracker, seams: Seams, camera: Camera
 ) -> Parts:
     field = FieldModel(settings.link.ramp_ms * MS, _field_slew(settings))
     length = settings.robot.length_mm * MM
@@ -149,10 +155,12 @@ def _parts(
         thermal=_thermal(settings),
         frame_size=settings.camera.size_px,
         length=length,
-        simulated=simulated,
+        simulated=camera.simulated,
         gait_model=_gait_model(settings),
         body_tilt=_body_tilt(settings.robot.lift_ratio),
         controller_case=seams.controller,
+        camera_trouble=lambda: camera.trouble,
+        calibration_problem=lambda: calibration_problem(settings.camera, camera.identity),
     )
 
 
@@ -211,17 +219,6 @@ def _pair(axis: str, coil: Coil) -> CoilPair:
     )
 
 
-def _camera_model(settings: RigFile) -> CameraModel:
-    camera = settings.camera
-    return CameraModel.looking_down(
-        size=camera.size_px,
-        height=camera.height_mm * MM,
-        picture_height=camera.picture_height_mm * MM,
-        tilt=(math.radians(camera.tilt_deg[0]), math.radians(camera.tilt_deg[1])),
-        distortion=camera.distortion,
-    )
-
-
 def _world(settings: RigFile, coils: CoilSet, realtime: bool) -> tuple[World, str]:
     """The simulated world and the name of the port to its board."""
     simulation = settings.simulation
@@ -253,12 +250,14 @@ def _winding(coil: Coil) -> Winding:
     return Winding(coil.resistance_ohm, coil.inductance_mH * 1e-3)
 
 
-def _camera(settings: RigFile, model: CameraModel, world: World | None, realtime: bool) -> Camera:
+def _camera(settings: RigFile, world: World | None, realtime: bool) -> Camera:
     if world is None:
-        return open_camera(settings.camera.uri, settings.camera.size_px, settings.camera.rate_Hz)
+        return open_camera(settings.camera.uri, camera_request(settings.camera))
+    staged = SCENES[settings.simulation.scene]
     scene = SceneSettings(
         rate=settings.camera.rate_Hz,
         latency=settings.simulation.latency_ms * MS,
+        assumed_latency=settings.camera.latency_ms * MS if settings.simulation.stamps == "arrival" else None,
         noise=settings.simulation.noise,
         blur=settings.simulation.blur_px,
         seed=settings.simulation.seed,
@@ -266,7 +265,20 @@ def _camera(settings: RigFile, model: CameraModel, world: World | None, realtime
         width=settings.robot.body_width_mm * MM,
         height=settings.robot.body_height_mm * MM,
     )
-    return SyntheticCamera(world, model, scene, _pace(settings, realtime))
+    return SyntheticCamera(world, assumed_model(settings.camera), scene, _pace(settings, realtime), staged)
+
+
+def camera_request(section: CameraSection) -> CameraRequest:
+    """What a real camera is asked to do."""
+    exposure = section.exposure_ms
+    return CameraRequest(
+        size=section.size_px,
+        rate=section.rate_Hz,
+        exposure=None if exposure is None else exposure * MS,
+        gain=section.gain,
+        white_balance=section.white_balance_K,
+        latency=section.latency_ms * MS,
+    )
 
 
 def _pace(settings: RigFile, realtime: bool) -> Pace:
@@ -276,14 +288,10 @@ def _pace(settings: RigFile, realtime: bool) -> Pace:
 
 
 def _tracker(settings: RigFile, model: CameraModel) -> ColourTracker:
-    vision, robot = settings.vision, settings.robot
+    robot = settings.robot
     return ColourTracker(
         model,
-        TrackerSettings(
-            colour=ColourRange(vision.hue_deg, vision.saturation, vision.value),
-            region=RegionFilter(vision.area_mm2[0] * 1e-6, vision.area_mm2[1] * 1e-6),
-            heading_hint=math.radians(vision.heading_hint_deg),
-        ),
+        tracker_settings(settings.vision),
         robot_length=robot.body_length_mm * MM,
         body_height=robot.body_height_mm * MM,
     )

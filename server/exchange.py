@@ -61,13 +61,13 @@ def without_traffic_log(settings: RigFile) -> RigFile:
 def exchange(old: Machine, settings: RigFile, build: Build) -> Exchange:
     """Close the old machine, with its coils at zero, and open one with other settings, or else the old one again.
 
-    A board that was not there before need not be there afterwards. Blocks for as long as a camera takes to open.
-    Raises `NoMachine`.
+    A board or a camera that was not there before need not be there afterwards. Blocks for as long as a camera takes
+    to open. Raises `NoMachine`.
     """
-    had_no_board = not old.link.is_ready
+    had_no_board, had_no_camera = not old.link.is_ready, bool(old.camera.trouble)
     old.close()
     try:
-        machine, failure = _opened(settings, build, patiently=had_no_board), None
+        machine, failure = _opened(settings, build, had_no_board, had_no_camera), None
     except Exception as error:
         failure = error
         log.warning(
@@ -91,7 +91,7 @@ def carried_heat(old: Machine, settings: RigFile) -> CoilHeat:
 
 def _restored(settings: RigFile, build: Build, failure: Exception) -> Machine:
     try:
-        return _opened(settings, build, patiently=True)
+        return _opened(settings, build, board_may_come=True, camera_may_come=True)
     except Exception as error:
         raise NoMachine(
             f"the changed rig could not be opened ({failure}), and the rig as it was cannot be opened any more "
@@ -99,10 +99,10 @@ def _restored(settings: RigFile, build: Build, failure: Exception) -> Machine:
         ) from error
 
 
-def _opened(settings: RigFile, build: Build, *, patiently: bool) -> Machine:
+def _opened(settings: RigFile, build: Build, board_may_come: bool, camera_may_come: bool) -> Machine:
     machine = build(settings)
     try:
-        machine.open(patiently=patiently)
+        machine.open(patiently=board_may_come, camera_may_come=camera_may_come)
     except BaseException:
         machine.close()
         raise

@@ -10,7 +10,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import logging
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from datetime import UTC, datetime
 from typing import Any, TypeVar
@@ -38,6 +38,7 @@ from server.run_list import RunList, new_id
 from server.settings import RigFile
 from server.streams import Publisher
 from server.trail import Trail
+from server.vision_settings import tracker_settings
 from server.watchdog import Hang, Watchdog, stopped
 
 T = TypeVar("T")
@@ -68,6 +69,7 @@ class Rig:
         self._stops = self._stops_before_exchange = 0
         self._lost = ""
         self._trail = Trail()
+        self._watchers: list[Callable[[Snapshot], None]] = []
         self.frame: Frame | None = None
         self.snapshot: Snapshot = self._loop.tick(None, machine.camera.now())
         self.selection = Selection()
@@ -117,8 +119,8 @@ class Rig:
         return self._task.exception()
 
     async def start(self) -> None:
-        """Open the link and start the loop; a board that is not there yet is waited for, disarmed."""
-        await self._thread.begin(lambda: self._machine.open(patiently=True))
+        """Open the link and start the loop; a board or a camera that is not there yet is waited for, disarmed."""
+        await self._thread.begin(lambda: self._machine.open(patiently=True, camera_may_come=True))
         self._task = asyncio.create_task(self._run(), name="control loop")
 
     async def stop(self) -> None:
@@ -194,7 +196,30 @@ class Rig:
         frame = self._machine.camera.read(FRAME_TIMEOUT)
         if frame is not None:
             self.frame = frame
-        return self._loop.tick(frame, self._machine.camera.now())
+        for note in self._machine.camera.take_notes():
+            self._loop.announce(note.severity, "camera", note.message)
+        snapshot = self._loop.tick(frame, self._machine.camera.now())
+        self._show(snapshot)
+        return snapshot
+
+    # Watchers ------------------------------------------------------------------------------------
+
+    @contextlib.contextmanager
+    def watched(self, watcher: Callable[[Snapshot], None]) -> Iterator[None]:
+        """`watcher` is told of every tick meanwhile, on the rig's thread; none is left out, as with `updates`."""
+        self._watchers = [*self._watchers, watcher]
+        try:
+            yield
+        finally:
+            self._watchers = [each for each in self._watchers if each is not watcher]
+
+    def _show(self, snapshot: Snapshot) -> None:
+        for watcher in self._watchers:
+            try:
+                watcher(snapshot)
+            except Exception:  # whoever watches may fail, control does not notice (faults.md, rule 8)
+                log.exception("a watcher of the rig failed, and is told of nothing more")
+                self._watchers = [each for each in self._watchers if each is not watcher]
 
     # News ----------------------------------------------------------------------------------------
 
@@ -305,6 +330,30 @@ class Rig:
         """Settings that no part of the machine has been built from, such as the rig's name."""
         self._machine.settings = settings
         self._announce_settings()
+
+    async def retune(self, settings: RigFile) -> None:
+        """Settings of which only the robot's looks are new, for the tracker; raises `Refused` unless disarmed."""
+        await self._ask(lambda: self._retune(settings))
+        self._announce_settings()
+
+    def _retune(self, settings: RigFile) -> None:
+        """On the rig's thread, where nothing can arm it meanwhile."""
+        require_disarmed(self._loop.state, "what the robot looks like")
+        turned = settings.vision.heading_hint_deg != self.settings.vision.heading_hint_deg
+        self._machine.tracker.retune(tracker_settings(settings.vision))
+        if turned:
+            self._loop.forget_robot()
+        self._machine.settings = settings
+
+    async def follow(self, u: float, v: float) -> None:
+        """The operator says where in the picture (px) the robot is; raises `Refused` while it is driven."""
+        await self._ask(lambda: self._follow(u, v))
+
+    def _follow(self, u: float, v: float) -> None:
+        if self._loop.state not in (RigState.DISARMED, RigState.HELD):
+            state = self._loop.state
+            raise Refused(f"the robot can be pointed at while the rig is disarmed or held; it is {state}")
+        self._machine.tracker.follow(u, v)
 
     async def rebuild(self, settings: RigFile) -> None:
         """Put a machine with other settings in this one's place, between two ticks.

@@ -29,6 +29,18 @@ log = logging.getLogger(__name__)
 LIVE = frozenset({"name", "version"})
 """Fields that no part of the machine is built from; they change at once, in any state."""
 
+LOOKS = (
+    "vision.profile",
+    "vision.profiles",
+    "vision.hue_deg",
+    "vision.saturation",
+    "vision.value",
+    "vision.end_mark",
+    "vision.area_mm2",
+    "vision.heading_hint_deg",
+)
+"""What the robot looks like: the tracker of a disarmed rig takes it without being built anew."""
+
 LOOK_EVERY = 1.0
 """How often the file on the disk is looked at, s."""
 
@@ -119,17 +131,24 @@ class RigChanges:
         """Let the rig run with the plan's settings. What differs counts, not what was asked."""
         wanted = self._as_run(plan.settings)
         fields = differences(self._rig.settings, wanted)
-        rebuild = bool(set(fields) - LIVE) or self._rig.is_lost
+        bound = tuple(sorted(set(fields) - LIVE))
+        rebuild = not all(map(_is_of_looks, bound)) or self._rig.is_lost
         if rebuild:
-            await self._exchange(wanted, tuple(sorted(set(fields) - LIVE)))
+            await self._exchange(wanted, bound)
+        elif bound:
+            self._require_disarmed(bound)
+            await self._rig.retune(wanted)
         elif fields:
             self._rig.take_settings(wanted)
         return Change(plan.changed, rebuild)
 
-    async def _exchange(self, wanted: RigFile, fields: tuple[str, ...]) -> None:
+    def _require_disarmed(self, fields: tuple[str, ...]) -> None:
         state = self._rig.snapshot.rig
         if state is not RigState.DISARMED and not self._rig.is_lost:
             raise NeedsDisarmed(state, fields)
+
+    async def _exchange(self, wanted: RigFile, fields: tuple[str, ...]) -> None:
+        self._require_disarmed(fields)
         try:
             await asyncio.to_thread(rehearse, wanted)
         except (ValueError, LinkError) as error:
@@ -139,6 +158,8 @@ class RigChanges:
     async def _put_back(self, settings: RigFile, change: Change) -> None:
         if change.rebuilt:
             await self._rig.rebuild(settings)
+        elif any(map(_is_of_looks, change.fields)):
+            await self._rig.retune(settings)
         else:
             self._rig.take_settings(settings)
 
@@ -204,6 +225,10 @@ class RigChanges:
                 EVENT,
                 f"the rig file {path} was changed on disk ({_listed(plan.changed)}); reload it to apply",
             )
+
+
+def _is_of_looks(field: str) -> bool:
+    return any(field == known or field.startswith(f"{known}.") for known in LOOKS)
 
 
 def _listed(fields: Iterable[str]) -> str:

@@ -15,6 +15,7 @@ from pydantic import ValidationError
 
 from server.atomic_save import Staged, keep_previous, previous_of
 from server.settings import FORMAT, RigFile, Section, in_words
+from vision.sources.addresses import shown
 
 NAME = "rig.toml"
 """The rig file that the data folder may hold."""
@@ -134,6 +135,14 @@ def merged(values: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, A
     return result
 
 
+def with_login(changes: Mapping[str, Any], uri: str) -> dict[str, Any]:
+    """The changes, but for a camera's URI that comes back as it was shown: it is the one that the rig has."""
+    camera = changes.get("camera")
+    if isinstance(camera, Mapping) and camera.get("uri") == shown(uri):
+        return {**changes, "camera": {**camera, "uri": uri}}
+    return dict(changes)
+
+
 def differences(before: Section, after: Section, prefix: str = "") -> tuple[str, ...]:
     """Dotted names of the fields whose values differ."""
     names: list[str] = []
@@ -141,6 +150,8 @@ def differences(before: Section, after: Section, prefix: str = "") -> tuple[str,
         old, new = getattr(before, name), getattr(after, name)
         if isinstance(old, Section) and isinstance(new, Section):
             names += differences(old, new, f"{prefix}{name}.")
+        elif isinstance(old, dict) and isinstance(new, dict):
+            names += [f"{prefix}{name}.{key}" for key in {**old, **new} if old.get(key) != new.get(key)]
         elif old != new:
             names.append(prefix + name)
     return tuple(names)
@@ -149,10 +160,14 @@ def differences(before: Section, after: Section, prefix: str = "") -> tuple[str,
 def with_settings(text: str, before: RigFile, after: RigFile) -> str:
     """The text with the values of `after` where they differ from `before`; comments and layout stay.
 
-    A layout in which that does not work out (some with dotted keys) is given up for a plain one with every value.
+    A layout in which that does not work out (some with dotted keys or inline tables) is given up for a plain one with
+    every value.
     """
     document = tomlkit.parse(text or f"{HEADING}version = {FORMAT}\n")
-    _write(document, before, after)
+    try:
+        _write(document, before, after)
+    except ValueError:  # tomlkit puts no table into an inline one
+        return _written_anew(after)
     changed = tomlkit.dumps(document)
     return changed if _says(changed, after) else _written_anew(after)
 
@@ -176,7 +191,9 @@ def _write(table: MutableMapping[str, Any], before: Section | None, after: Secti
             continue
         if isinstance(new, Section):
             _write_section(table, name, old if isinstance(old, Section) else None, new)
-        elif plain[name] is None:
+        elif isinstance(new, dict) and new:
+            _write_named(table, name, old if isinstance(old, dict) else {}, new)
+        elif plain[name] is None or plain[name] == {}:
             table.pop(name, None)
         else:
             table[name] = plain[name]
@@ -193,6 +210,21 @@ def _write_section(
     _write(table[name], before, after)
 
 
+def _write_named(
+    table: MutableMapping[str, Any], name: str, before: Mapping[str, Section], after: Mapping[str, Section]
+) -> None:
+    """A table of sections with names that the lab has given them; a new one is written whole."""
+    sections = table.setdefault(name, tomlkit.table(is_super_table=True))
+    for gone in before.keys() - after.keys():
+        sections.pop(gone, None)
+    for key, section in after.items():
+        if key not in sections:
+            sections[key] = tomlkit.table()
+            _write(sections[key], None, section)
+        elif section != before.get(key):
+            _write(sections[key], before.get(key), section)
+
+
 class RigStore:
     """One rig file, which need not be there yet. text, settings: as last read or saved here."""
 
@@ -205,7 +237,8 @@ class RigStore:
 
     def plan(self, changes: Mapping[str, Any]) -> Plan:
         """What `changes` make of the file; raises ValidationError or `RigFileError`, and changes nothing."""
-        wanted = RigFile.model_validate(merged(self.settings.model_dump(mode="json"), changes))
+        asked = with_login(changes, self.settings.camera.uri)
+        wanted = RigFile.model_validate(merged(self.settings.model_dump(mode="json"), asked))
         text = with_settings(self.text, self.settings, wanted)
         return Plan(text, wanted, differences(self.settings, wanted))
 

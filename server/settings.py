@@ -9,9 +9,14 @@ import math
 from collections.abc import Callable
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import Field, ValidationError, field_validator, model_validator
 
 from control.simulation.wiring import Wiring
+from server.camera_sections import BoardSection, LensSection, PlaneSection
+from server.section import Positive, Section
+from server.vision_section import VisionSection
+from vision.simulated.scenes import FOR_ANY_LENS
+from vision.sources.addresses import shown
 
 MM = 1e-3
 MS = 1e-3
@@ -19,7 +24,6 @@ MS = 1e-3
 FORMAT = 1
 """Version of the rig file's layout that this program reads and writes."""
 
-Positive = Annotated[float, Field(gt=0.0)]
 Sigma = Annotated[float, Field(gt=0.0, le=1000.0)]
 PerCoil = Annotated[list[Annotated[float, Field(gt=0.0, le=30.0)]], Field(min_length=3, max_length=3)]
 """A VNH5019 carries 30 A for a moment and 12 A for long."""
@@ -28,8 +32,10 @@ PerCoil = Annotated[list[Annotated[float, Field(gt=0.0, le=30.0)]], Field(min_le
 Lead = Literal["x", "y", "z", "-x", "-y", "-z"]
 
 
-class Section(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+LIVE = ("v4l:", "rtsp:", "http:", "https:")
+"""How the addresses of cameras begin whose frames bear the time of their arrival; a recording has its own."""
+NOT_MEASURED = "not measured"
+"""What stands for the source of figures that are assumed."""
 
 
 class Robot(Section):
@@ -90,22 +96,18 @@ class Coils(Section):
 class LimitsSection(Section):
     """What one coil, all of them, the robot and its field may do; what is heard of them is held against it."""
 
-    current_A: PerCoil = [8.0, 8.0, 8.0]
+    current_A: PerCoil = Field(default=[8.0, 8.0, 8.0])
     power_W: Annotated[float, Field(gt=0.0, le=10_000.0)] = 300.0
     """Heat of all coils together: what a 24 V supply of 12.5 A gives (assumed)."""
     current_slew_A_s: Annotated[
         list[Annotated[float, Field(gt=0.0, le=1e6)]], Field(min_length=3, max_length=3)
-    ] = [
-        192.0,
-        436.0,
-        1714.0,
-    ]
+    ] = Field(default=[192.0, 436.0, 1714.0])
     """V / L of each coil at 24 V: no bridge of that supply changes its current faster."""
-    continuous_A: PerCoil = [9.0, 7.9, 6.1]
+    continuous_A: PerCoil = Field(default=[9.0, 7.9, 6.1])
     """What each coil bears for ever, 40 K above the room; estimated from its size and wire."""
     heat_time_constant_s: Annotated[
         list[Annotated[float, Field(ge=1.0, le=1e6)]], Field(min_length=3, max_length=3)
-    ] = [2700.0, 2100.0, 1300.0]
+    ] = Field(default=[2700.0, 2100.0, 1300.0])
     field_mT: Annotated[float, Field(gt=0.0, le=50.0)] = 15.0
     rate_deg_s: Annotated[float, Field(gt=0.0, le=3600.0)] = 360.0
     workspace_mm: Annotated[float, Field(gt=0.0, le=1000.0)] = 120.0
@@ -123,12 +125,21 @@ class LimitsSection(Section):
         return self
 
 
+SIMULATED_CAMERA = "simulated camera"
+"""The identity of the camera that is none."""
+
+
 class CameraSection(Section):
     """Where the pictures come from, and a camera that looks straight down until it is calibrated."""
 
     uri: str = "sim://"
     size_px: tuple[Annotated[int, Field(ge=64, le=8192)], Annotated[int, Field(ge=64, le=8192)]] = (640, 480)
     rate_Hz: Annotated[float, Field(ge=1.0, le=500.0)] = 60.0
+    exposure_ms: Annotated[float, Field(ge=0.05, le=1000.0)] | None = None
+    """Of a real camera, like the next two; without it, it is the camera's own automatic."""
+    gain: Annotated[float, Field(ge=0.0, le=100_000.0)] | None = None
+    """In the steps of the camera's driver."""
+    white_balance_K: Annotated[float, Field(ge=1000.0, le=20_000.0)] | None = None
     height_mm: Annotated[float, Field(gt=0.0, le=10_000.0)] = 350.0
     picture_height_mm: Annotated[float, Field(gt=0.0, le=10_000.0)] = 130.0
     """Length on the plate that fills the picture's height."""
@@ -137,6 +148,15 @@ class CameraSection(Section):
         0.0,
     )
     distortion: tuple[float, float, float, float, float] = (-0.12, 0.02, 0.0, 0.0, 0.0)
+    latency_ms: Annotated[float, Field(ge=0.0, le=200.0)] = 0.0
+    """From mid-exposure to the time that a frame is stamped with; subtracted from the stamps."""
+    latency_source: Annotated[str, Field(max_length=120)] = NOT_MEASURED
+    """Where the latency comes from: the date and the standard error of a measurement."""
+    lens: LensSection | None = None
+    """Without it, as assumed above."""
+    plane: PlaneSection | None = None
+    """Without it, the camera hangs as assumed above."""
+    board: BoardSection = BoardSection()
 
 
 class LinkSection(Section):
@@ -152,20 +172,6 @@ class LinkSection(Section):
     """From zero to 10 mT at arming."""
     traffic_log: bool = False
     """Every byte both ways goes to link-traffic.log in the data folder: at most 80 MiB."""
-
-
-class VisionSection(Section):
-    """Which colour is the robot (hue 0..360 degrees, wrapping through 0; the rest 0..255) and how big it is."""
-
-    hue_deg: tuple[Annotated[float, Field(ge=0, le=360)], Annotated[float, Field(ge=0, le=360)]] = (
-        340.0,
-        20.0,
-    )
-    saturation: tuple[Annotated[int, Field(ge=0, le=255)], Annotated[int, Field(ge=0, le=255)]] = (110, 255)
-    value: tuple[Annotated[int, Field(ge=0, le=255)], Annotated[int, Field(ge=0, le=255)]] = (60, 255)
-    area_mm2: tuple[Positive, Positive] = (12.0, 90.0)
-    heading_hint_deg: Annotated[float, Field(ge=-360, le=360)] = 90.0
-    """Which way the robot is put down: tells its two ends apart at the first sighting."""
 
 
 class EstimatorSection(Section):
@@ -199,6 +205,8 @@ class GaitSection(Section):
     """It lands this far ahead in the direction of walking,"""
     forward_per_sweep_mm_rad: Slip = 0.0
     """and this much further for each radian of the sweep."""
+    source: Annotated[str, Field(max_length=160)] = NOT_MEASURED
+    """Where these figures, the robot's length and its play come from: date and standard errors."""
 
 
 class SimulationSection(Section):
@@ -211,6 +219,11 @@ class SimulationSection(Section):
     started; tcp://HOST:PORT: another board behind its lock-step port."""
     latency_ms: Annotated[float, Field(ge=0.0, le=120.0)] = 35.0
     """The rig holds when frames get older than 150 ms."""
+    stamps: Literal["capture", "arrival"] = "capture"
+    """capture: frames bear the true time of their exposure; arrival: that at which they come, less
+    camera.latency_ms, as a real camera's do."""
+    scene: str = "clean"
+    """What is in front of the camera beside the robot, and in which light; the lens stays that of [camera]."""
     noise: Annotated[float, Field(ge=0.0, le=50.0)] = 3.0
     """Grey levels."""
     blur_px: Annotated[float, Field(ge=0.0, le=10.0)] = 0.7
@@ -223,6 +236,13 @@ class SimulationSection(Section):
     """The true gains of the fields x, y, z; without it those that the rig file gives the coils."""
     registration: RegistrationSection | None = None
     """Where the coils truly stand; without it where the rig file says."""
+
+    @field_validator("scene")
+    @classmethod
+    def _scene_is_known(cls, scene: str) -> str:
+        if scene not in FOR_ANY_LENS:
+            raise ValueError(f"there is no scene called {scene!r}; choose one of: {', '.join(FOR_ANY_LENS)}")
+        return scene
 
     @model_validator(mode="after")
     def _each_pair_has_one_bridge(self) -> SimulationSection:
@@ -254,6 +274,22 @@ class RigFile(Section):
     def is_simulated(self) -> bool:
         return self.camera.uri.startswith("sim://")
 
+    @property
+    def latency_is_known(self) -> bool:
+        """Whether the frames' stamps can be believed: what they are late by is known, or they are not late."""
+        camera = self.camera
+        if camera.latency_source != NOT_MEASURED or camera.latency_ms > 0.0:
+            return True
+        if self.is_simulated:
+            return self.simulation.stamps == "capture"
+        return not camera.uri.startswith(LIVE)
+
+    @property
+    def subtracted_latency_ms(self) -> float:
+        """What the frames' stamps have been corrected by; nothing where a simulated camera knows the true time."""
+        knows_better = self.is_simulated and self.simulation.stamps == "capture"
+        return 0.0 if knows_better else self.camera.latency_ms
+
     @model_validator(mode="after")
     def _camera_and_port_share_a_world(self) -> RigFile:
         if self.link.port.startswith("sim://") and not self.is_simulated:
@@ -272,8 +308,10 @@ class RigFile(Section):
         return self
 
     def to_public(self) -> dict[str, Any]:
-        """The values as the outside sees them."""
-        return {**self.model_dump(mode="json"), "simulated": self.is_simulated}
+        """The values as the outside sees them: without the login of a network camera."""
+        values = {**self.model_dump(mode="json"), "simulated": self.is_simulated}
+        values["camera"]["uri"] = shown(self.camera.uri)
+        return values
 
     def with_simulation(self, **changes: Any) -> RigFile:
         """The same rig with other values in its simulation section, validated."""
@@ -285,6 +323,9 @@ class RigFile(Section):
         """The same rig with its camera and port simulated."""
         whole = self.model_dump(mode="json")
         whole["camera"]["uri"] = whole["link"]["port"] = "sim://"
+        for part in ("lens", "plane"):
+            if whole["camera"][part] and whole["camera"][part]["identity"] != SIMULATED_CAMERA:
+                whole["camera"][part] = None
         whole["simulation"]["board"] = "twin"
         return RigFile.model_validate(whole)
 
@@ -298,7 +339,8 @@ def in_words(error: ValidationError, place: Callable[[tuple[str | int, ...]], st
     lines = []
     for problem in error.errors(include_url=False):
         where = ".".join(str(part) for part in problem["loc"]) or "the whole file"
-        given = "" if problem["type"] in ("missing", "extra_forbidden") else f" (given: {problem['input']!r})"
+        is_one_value = problem["type"] not in ("missing", "extra_forbidden") and not isinstance(problem["input"], dict)
+        given = f" (given: {problem['input']!r})" if is_one_value else ""
         lines.append(f"  {where}: {problem['msg']}{given}{place(problem['loc'])}")
     return "\n".join(lines)
 

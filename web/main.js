@@ -2,6 +2,7 @@
 import { Bar, stateWord } from "./bar/bar.js";
 import { ConsentDialog } from "./bar/consent.js";
 import { Notices } from "./bar/notices.js";
+import { Wizard } from "./calibration/wizard.js";
 import { Camera } from "./camera/camera.js";
 import { Charts } from "./charts/charts.js";
 import { Journal } from "./journal/journal.js";
@@ -16,15 +17,17 @@ const root = document.getElementById("app");
 
 function Page({ retry }) {
   const lost = useStore((state) => state.connection.status === "lost");
+  const settingUp = useStore((state) => state.setup !== null);
   const title = useStore((state) => `${stateWord(state.tick)} – ${state.rig?.name ?? "pivotrig"}`);
   useEffect(() => void (document.title = lost ? "no connection – pivotrig" : title), [lost, title]);
   return html`
-    <div class="page" data-connection=${lost ? "lost" : "fine"}>
+    <div class="page" data-connection=${lost ? "lost" : "fine"} data-setting-up=${settingUp}>
       <${Bar} />
       <${Notices} retry=${retry} />
       <${ConsentDialog} />
       <main inert=${lost}>
         <${Camera} />
+        <${Wizard} />
         <${Scene} />
         <${RunPanel} />
         <${Charts} />

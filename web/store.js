@@ -25,6 +25,8 @@ let state = {
   /** Text beside a field, by "controller.gain"-like keys: what the page refused, and what the server refused. */
   draftErrors: {},
   serverErrors: {},
+  /** What the camera's setup knows and does (calibration/setup.js), or null while it is closed. */
+  setup: null,
   /** The question before a real rig is armed is on the page. */
   consentAsked: false,
   /** Name of the action under way, or null. */

@@ -8,6 +8,7 @@ from control.controllers.planner import Planner
 from control.controllers.sequence import Sequence
 from control.controllers.star import Star
 from control.controllers.straight import Straight
+from control.controllers.wiggle import Wiggle
 
 __all__ = [
     "Controller",
@@ -21,5 +22,6 @@ __all__ = [
     "Situation",
     "Star",
     "Straight",
+    "Wiggle",
     "controllers",
 ]

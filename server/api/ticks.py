@@ -8,7 +8,17 @@ from collections.abc import Iterable
 from typing import Any
 
 from control.model import Measurement, Observation, Pose
-from control.snapshot import Command, Fault, LinkCounts, LinkStatus, Refusals, RunProgress, Snapshot, Timing
+from control.snapshot import (
+    CameraTiming,
+    Command,
+    Fault,
+    LinkCounts,
+    LinkStatus,
+    Refusals,
+    RunProgress,
+    Snapshot,
+    Timing,
+)
 
 MILLI = 1e3
 
@@ -41,6 +51,7 @@ def state(snapshot: Snapshot) -> dict[str, Any]:
         "time_s": number(snapshot.time),
         "captured_s": number(snapshot.captured_at),
         "tracking": snapshot.tracking.value,
+        "tracking_reason": snapshot.tracking_reason,
         "tracking_age_s": number(snapshot.tracking_age),
         "error_mm": scaled(snapshot.error, MILLI),
         "saturated": bool(snapshot.limited_by),
@@ -52,6 +63,7 @@ def state(snapshot: Snapshot) -> dict[str, Any]:
         **coils(snapshot),
         "command": command(snapshot.command),
         "run": run(snapshot.run),
+        "camera": camera(snapshot.camera),
         "loop": loop(snapshot.timing),
         "link": link(snapshot.link),
         "operator": None,
@@ -84,8 +96,12 @@ def refusals(value: Refusals) -> dict[str, int]:
 
 def sighting(observation: Observation | None) -> dict[str, Any]:
     if observation is None:
-        return {"measurement": None, "window_px": None}
-    return {"measurement": measurement(observation.measurement), "window_px": list(observation.window)}
+        return {"measurement": None, "window_px": None, "rivals_px": []}
+    return {
+        "measurement": measurement(observation.measurement),
+        "window_px": list(observation.window),
+        "rivals_px": [numbers(rival, digits=1) for rival in observation.rivals],
+    }
 
 
 def point(x: float, y: float) -> dict[str, Any]:
@@ -137,6 +153,10 @@ def run(value: RunProgress | None) -> dict[str, Any] | None:
         "sweeps": value.sweeps,
         "reversals": value.reversals,
     }
+
+
+def camera(value: CameraTiming) -> dict[str, Any]:
+    return {"latency_ms": scaled(value.latency, MILLI, 2), "rate_Hz": number(value.rate, 2)}
 
 
 def loop(value: Timing) -> dict[str, Any]:

@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-import json
 import math
-from dataclasses import asdict
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from pydantic import ValidationError
 
 from control.gait import Gait
-from control.gait_model import GaitModel
-from server.commands.bench import explained
+from server.commands.bench import JsonOption, SaveOption, explained
+from server.commands.calibrate_camera import board, lens
 from server.commands.calibrate_coils import coils
+from server.commands.calibrate_latency import latency
+from server.commands.calibrate_plane import plane
 from server.commands.calibrate_registration import polarity, registration
 from server.commands.calibrate_windings import sense, windings
+from server.commands.calibration_result import saved_or_shown, show
 from server.commands.consent import YesOption, ask_for_consent
 from server.commands.outcome import (
     USAGE,
@@ -25,7 +26,7 @@ from server.commands.outcome import (
     read_rig_file,
     with_simulation,
 )
-from server.settings import MM, MS, GaitSection, RigFile, in_words
+from server.settings import MM, RigFile, in_words
 from server.signals import coils_stop_first
 
 if TYPE_CHECKING:
@@ -33,16 +34,7 @@ if TYPE_CHECKING:
 
 app = typer.Typer(no_args_is_help=True, help="Measure a rig.")
 
-FIGURES: dict[str, tuple[str, float]] = {
-    "length": ("length_mm", MM),
-    "backlash": ("backlash_deg", math.radians(1.0)),
-    "heading_offset": ("heading_offset_deg", math.radians(1.0)),
-    "out": ("out_mm", MM),
-    "forward_base": ("forward_base_mm", MM),
-    "forward_per_sweep": ("forward_per_sweep_mm_rad", MM),
-    "lag": ("lag_ms", MS),
-}
-"""Fields of `GaitModel`, their names outside, and the unit in SI."""
+Found = tuple[dict[str, Any], dict[str, Any]]
 
 
 @app.callback()
@@ -50,11 +42,15 @@ def calibrate() -> None:
     """Measure a rig."""
 
 
+app.command()(board)
+app.command()(lens)
+app.command()(plane)
 app.command()(coils)
 app.command()(windings)
 app.command()(sense)
 app.command()(polarity)
 app.command()(registration)
+app.command()(latency)
 
 
 @app.command()
@@ -69,8 +65,9 @@ def gait(
     plant: Annotated[str | None, typer.Option(help="Simulated robot: slip or noslip.")] = None,
     seed: Annotated[int | None, typer.Option(help="Seed of the simulation.")] = None,
     rig: RigOption = None,
+    save: SaveOption = False,
     yes: YesOption = False,
-    as_json: Annotated[bool, typer.Option("--json", help="One JSON object on stdout.")] = False,
+    as_json: JsonOption = False,
 ) -> None:
     """Walk a star and report pivot length, play, heading offset, and what each pivot switch does.
 
@@ -82,8 +79,8 @@ def gait(
     from server.gait_calibration import Star
 
     choice = _gait(sweep, tilt), Star(legs, leg * MM, math.radians(rate))
-    result = _calibrate(rig_file, *choice, consent=ask_for_consent(rig_file, yes=yes))
-    print(json.dumps(result, allow_nan=False) if as_json else _in_words(result))
+    result, changes = _calibrate(rig_file, *choice, consent=ask_for_consent(rig_file, yes=yes))
+    show(result, _in_words(result), saved_or_shown(rig, changes, save), as_json)
 
 
 def _gait(sweep: float, tilt: float) -> Gait:
@@ -95,9 +92,10 @@ def _gait(sweep: float, tilt: float) -> Gait:
         raise fail(f"the star cannot be walked:\n{in_words(error)}", USAGE) from error
 
 
-def _calibrate(rig_file: RigFile, gait: Gait, star: Star, *, consent: bool) -> dict[str, Any]:
+def _calibrate(rig_file: RigFile, gait: Gait, star: Star, *, consent: bool) -> Found:
+    """The figures as they are told, and what of them the rig file has a place for."""
     from server.assembly import build_machine
-    from server.gait_calibration import calibrate_gait
+    from server.gait_calibration import calibrate_gait, changes, figures_json
     from server.run_list import new_id
 
     with explained():
@@ -105,7 +103,7 @@ def _calibrate(rig_file: RigFile, gait: Gait, star: Star, *, consent: bool) -> d
         with console.status("walking the star"), coils_stop_first(machine.stop_coils):
             done = calibrate_gait(machine, new_id(), gait, star, consent=consent)
     counts = done.run.ended.metrics
-    return {
+    result = {
         "sweep_deg": round(math.degrees(gait.sweep), 6),
         "tilt_deg": round(math.degrees(gait.tilt), 6),
         "figures": figures_json(done.model),
@@ -114,21 +112,13 @@ def _calibrate(rig_file: RigFile, gait: Gait, star: Star, *, consent: bool) -> d
         "steps": counts.steps,
         "wall_s": round(done.run.wall, 3),
     }
-
-
-def figures_json(model: GaitModel) -> dict[str, dict[str, float]]:
-    """Each figure with its standard error, in the lab's units."""
-    values = asdict(model)
-    errors = values["uncertainty"]
-    return {
-        name: {"value": round(values[field] / unit, 5), "standard_error": round(errors[field] / unit, 5)}
-        for field, (name, unit) in FIGURES.items()
-    }
+    return result, changes(done.model, rig_file)
 
 
 _MEANING = {
     "length_mm": "distance between the pivots",
     "backlash_deg": "play between the field's heading and the body's",
+    "skew_deg": "heading of the pivots beyond that of the coloured body",
     "heading_offset_deg": "field's heading beyond the seen one, in the middle of the play",
     "out_mm": "per switch: the new pivot lands this far out, along the body",
     "forward_base_mm": "per switch: the new pivot lands this far ahead,",
@@ -137,24 +127,11 @@ _MEANING = {
 }
 
 
-def _in_words(result: dict[str, Any]) -> str:
+def _in_words(result: dict[str, Any]) -> list[str]:
     lines = [
         f"sweep {result['sweep_deg']:g}°, tilt {result['tilt_deg']:g}°, {result['steps']} pivot switches"
     ]
     for name, figure in result["figures"].items():
         value = f"{figure['value']:.3f} ± {figure['standard_error']:.3f}"
         lines.append(f"{name:<25} {value:>17}   {_MEANING[name]}")
-    return "\n".join([*lines, "", "for the rig file:", *_rig_file_lines(result["figures"])])
-
-
-def _rig_file_lines(figures: dict[str, dict[str, float]]) -> list[str]:
-    """What of the figures the rig file has a place for, as TOML."""
-    value = {name: round(figure["value"], 3) for name, figure in figures.items()}
-    return [
-        "[robot]",
-        f"length_mm = {value['length_mm']}",
-        "[estimator]",
-        f"backlash_deg = {max(0.0, value['backlash_deg'])}",
-        "[gait]",
-        *(f"{name} = {value[name]}" for name in GaitSection.model_fields),
-    ]
+    return lines

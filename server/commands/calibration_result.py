@@ -36,8 +36,9 @@ def saved_or_shown(rig: Path | None, changes: dict[str, Any], save: bool) -> str
 
 
 def toml_lines(changes: dict[str, Any], prefix: str = "") -> list[str]:
-    """Nested changes as the lines of a rig file."""
-    lines = [f"{name} = {_toml(value)}" for name, value in changes.items() if not isinstance(value, dict)]
+    """Nested changes as the lines of a rig file; what is None has none."""
+    plain = {name: value for name, value in changes.items() if not (value is None or isinstance(value, dict))}
+    lines = [f"{name} = {_toml(value)}" for name, value in plain.items()]
     if lines and prefix:
         lines.insert(0, f"[{prefix}]")
     for name, value in changes.items():

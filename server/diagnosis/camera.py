@@ -6,8 +6,12 @@ from collections.abc import Iterator
 
 from control.model import Frame
 from control.parts import Camera
-from server.diagnosis.check import Check, ok, problem, warning
+from server.diagnosis import colour
+from server.diagnosis.check import Check, info, ok, problem, warning
 from server.settings import RigFile
+from vision.sources.addresses import shown
+from vision.sources.listing import FoundCamera
+from vision.sources.request import CameraError
 
 WATCHED = 1.0
 """How long frames are counted, s of the camera's clock."""
@@ -15,19 +19,38 @@ FIRST_FRAME = 3.0
 """A camera that has just been opened may take so long to its first frame, s."""
 SLOWER = 0.9
 """Of the asked rate that still counts as kept."""
+CORRECT = "ask for what the camera offers in [camera] of the rig file, or leave the line out"
 DARK = 8.0
 """Mean grey level (0..255) of a picture behind a lens cap."""
 
 
+def listed(cameras: list[FoundCamera]) -> Check:
+    """Those of this computer, whichever the rig uses."""
+    if not cameras:
+        return info("cameras", "none on this computer")
+    return info("cameras", "; ".join(map(in_words, cameras)))
+
+
+def in_words(camera: FoundCamera) -> str:
+    used = ", in use" if camera.in_use else ""
+    return f"{camera.name} ({camera.identity}) at {camera.uri}{used}"
+
+
+def cannot_be_opened(error: CameraError) -> Check:
+    return problem("camera", str(error), "connect it, or correct [camera] in the rig file")
+
+
 def examine(camera: Camera, settings: RigFile) -> Iterator[Check]:
+    """The camera's own notes (what it does otherwise than asked) come with what was seen of it."""
     frames = watch(camera)
+    yield from (warning("camera settings", note.message, CORRECT) for note in camera.take_notes())
     if len(frames) < 2:
-        yield problem(
-            "camera", f"{settings.camera.uri} delivers no frames", "connect it anew; close other programs"
-        )
+        found = f"{shown(settings.camera.uri)} delivers no frames"
+        yield problem("camera", found, "connect it anew; close other programs")
         return
     yield delivery(frames, settings)
     yield content(frames[-1])
+    yield colour.examine(frames[-1], settings)
 
 
 def watch(camera: Camera) -> list[Frame]:
@@ -46,7 +69,7 @@ def delivery(frames: list[Frame], settings: RigFile) -> Check:
     height, width = frames[-1].image.shape[:2]
     asked = settings.camera
     rate = (len(frames) - 1) / (frames[-1].captured_at - frames[0].captured_at)
-    found = f"{asked.uri}: {width}x{height} px, {rate:.1f} frames/s"
+    found = f"{shown(asked.uri)}: {width}x{height} px, {rate:.1f} frames/s"
     if (width, height) != asked.size_px:
         size = f"{asked.size_px[0]}x{asked.size_px[1]}"
         return problem(

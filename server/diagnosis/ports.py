@@ -6,13 +6,15 @@ import grp
 import os
 import stat
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
-from urllib.parse import urlsplit
 
 from control.link.discovery import AUTO, UsbPort, usb_ports
 from control.link.opening import permission_advice
 from server.diagnosis.check import Check, info, ok, problem
 from server.settings import RigFile
+from vision.sources.addresses import device_of
+from vision.sources.request import CameraError
 
 
 def examine(settings: RigFile) -> Iterator[Check]:
@@ -41,9 +43,9 @@ def devices(settings: RigFile, ports: list[UsbPort]) -> list[str]:
     """The device files that this rig opens."""
     port = settings.link.port
     found = [port] if is_device(port) else [each.device for each in ports if port == AUTO and each.board]
-    camera = urlsplit(settings.camera.uri)
-    if camera.scheme == "v4l":
-        found.append(camera.path or f"/dev/video{camera.netloc}")
+    if settings.camera.uri.startswith("v4l:"):
+        with suppress(CameraError):  # a URI that is not understood is told of where the camera is looked at
+            found.append(str(device_of(settings.camera.uri)))
     return found
 
 

@@ -9,12 +9,13 @@ from control.link.discovery import AUTO, TheOneBoard
 from control.link.opening import PortError
 from control.link.port import Link
 from control.parts import Camera
-from server.assembly import board_configuration, build_machine
-from server.diagnosis import board, camera
+from server.assembly import board_configuration, build_machine, camera_request
+from server.diagnosis import board, camera, latency
 from server.diagnosis.check import Check, problem
 from server.diagnosis.ports import is_device
 from server.exchange import without_traffic_log
 from server.settings import RigFile
+from vision.sources.listing import find_cameras
 from vision.sources.opening import CameraError, open_camera
 
 PAUSE = 5e-3
@@ -22,6 +23,7 @@ PAUSE = 5e-3
 
 
 def examine(settings: RigFile) -> Iterator[Check]:
+    yield camera.listed(find_cameras())
     if settings.is_simulated:
         yield from simulated(settings)
         return
@@ -65,13 +67,16 @@ def real_board(settings: RigFile) -> Iterator[Check]:
 
 
 def real_camera(settings: RigFile) -> Iterator[Check]:
-    section = settings.camera
     try:
-        opened = open_camera(section.uri, section.size_px, section.rate_Hz)
+        opened = open_camera(settings.camera.uri, camera_request(settings.camera))
     except CameraError as error:
-        yield problem("camera", str(error), "connect it, or correct [camera] in the rig file")
+        yield camera.cannot_be_opened(error)
         return
     try:
+        opened.require()
         yield from camera.examine(opened, settings)
+        yield latency.examine(settings)
+    except CameraError as error:
+        yield camera.cannot_be_opened(error)
     finally:
         opened.close()

@@ -34,6 +34,16 @@ def own_server(tmp_path: Path) -> Iterator[ServedRig]:
     rig.stop()
 
 
+@pytest.fixture(scope="module")
+def workshop(tmp_path_factory: pytest.TempPathFactory) -> Iterator[ServedRig]:
+    """A server whose rig file the tests of one module may change; it was saved once, so that saves can be undone."""
+    rig = ServedRig(tmp_path_factory.mktemp("workshop"))
+    rig.start()
+    rig.send("PATCH", "/rig", {"name": "Bench 5"})
+    yield rig
+    rig.stop()
+
+
 @pytest.fixture(scope="session")
 def browser() -> Iterator[Browser]:
     chromium = shutil.which("chromium") or shutil.which("google-chrome")

@@ -163,6 +163,11 @@ def test_a_picture_of_another_camera_disarms() -> None:
     assert message(frame_problem="wrong size") == "wrong size"
 
 
+def test_a_calibration_of_another_camera_disarms_and_says_whose_it_is() -> None:
+    assert after(calibration_problem="another camera's") == [(DISARM, "calibration")]
+    assert message(calibration_problem="another camera's") == "another camera's"
+
+
 def test_three_identical_pictures_are_a_frozen_camera() -> None:
     assert after(identical_frames=FROZEN_FRAMES - 1) == []
     assert after(identical_frames=FROZEN_FRAMES) == [(HOLD, "frozen")]
@@ -173,6 +178,14 @@ def test_a_picture_from_the_future_is_as_bad_as_an_old_one() -> None:
     assert after(frame_delay=0.0) == []
     assert after(frame_delay=-1e-6) == [(HOLD, "late")]
     assert message(frame_delay=0.2) == "frames are 200 ms old, 0 to 150 ms are allowed"
+
+
+def test_a_camera_that_is_away_holds_with_the_reason() -> None:
+    """The reason alone is no fault while pictures come: it is the age of the newest that counts."""
+    trouble = "camera v4l://0 is not plugged in"
+    assert after(frame_age=0.2, camera_trouble=trouble) == [(HOLD, "camera")]
+    assert message(frame_age=0.2, camera_trouble=trouble) == trouble
+    assert after(camera_trouble=trouble) == []
 
 
 def test_a_camera_that_never_sent_a_picture_says_so() -> None:

@@ -22,6 +22,9 @@ GO_ON = {RUNNING: CARRY_ON, HELD: RESUME, DISARMED: ARM, FAULT: RESET}
 FRAME = 17
 """Milliseconds: a frame at 60 Hz, after which the loop looks again."""
 
+REACHING = 200
+"""Milliseconds that the simulated hand takes from the picture's border to the robot."""
+
 
 AGAINST = DISARMED, "sign"
 """The robot turns against the field."""
@@ -87,10 +90,20 @@ _PROMISES = (
         217, 218, tries=2, or_else=AGAINST,
     ),
     Promise("robot_hidden", "the robot is not seen", HELD, "lost", 217, 218),
+    Promise("light_off", "the robot is not seen", HELD, "lost", 217, 218),
+    Promise("exposure_jump", "a brighter or darker picture, nothing else", RUNNING),
+    Promise("flicker", "bands in the picture, nothing else", RUNNING),
+    Promise(
+        "glare", "a white spot on the robot; where it is large, the robot is partly covered", RUNNING,
+        or_else=(HELD, "lost"),
+    ),
+    Promise("hand", "the robot is not seen", HELD, "lost", REACHING + 217, REACHING + 218),
+    Promise("second_robot", "another robot in the picture, nothing else", RUNNING),
+    Promise("debris", "bits in the picture, nothing else", RUNNING),
     Promise("sighting_jumps", "the robot is not where it should be", HELD, "lost", 217, 218),
     Promise("sighting_nan", "the robot is not seen; refused sightings are counted", HELD, "lost", 217, 218),
     Promise("camera_cropped", "pictures of another size", DISARMED, "frame", 2 * FRAME, 3 * FRAME),
-    Promise("camera_timeless", "no frame; refused frames are counted", HELD, "camera", 104, 105),
+    Promise("camera_timeless", "no frame; refused frames are counted", HELD, "camera", 100 + FRAME, 101 + FRAME),
     Promise("line_unplugged", "the port is gone", DISARMED, "link", 2 * FRAME, 155),
     Promise("line_silent", "no word from the board", DISARMED, "telemetry", 320, 325),
     Promise("line_jammed", "the port takes no bytes", DISARMED, "link", 2 * FRAME, 155),

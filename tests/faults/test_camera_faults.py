@@ -2,7 +2,17 @@
 
 from __future__ import annotations
 
+import pytest
+
+from control.model import Tracking
+from control.snapshot import RigState
+from tests.faults.fault_bench import FaultBench
 from tests.faults.trial import keeps_its_promise
+
+WALKS_ON_OR_IS_HELD = (RigState.RUNNING, ""), (RigState.HELD, "lost"), (RigState.HELD, "frozen")
+"""Pictures that are white all over are alike: they count as frozen."""
+HALF_A_LENGTH = 0.005
+"""Of the robot, m."""
 
 
 def test_an_unplugged_camera_holds_the_robot() -> None:
@@ -47,6 +57,86 @@ def test_a_hidden_robot_is_not_driven() -> None:
     """When something covers the robot, it is driven by prediction for 0.15 s at most; you resume when it
     is seen again."""
     keeps_its_promise("robot_hidden")
+
+
+def test_darkness_holds_the_robot() -> None:
+    """When the lamp goes out, the robot is driven by prediction for 0.15 s at most; you resume when it is light."""
+    keeps_its_promise("light_off")
+
+
+def test_a_jump_of_the_exposure_changes_nothing() -> None:
+    """When everything is twice as bright from one picture to the next, the robot walks on."""
+    keeps_its_promise("exposure_jump")
+
+
+def test_flickering_light_changes_nothing() -> None:
+    """When dark bands wander through the picture, the robot walks on."""
+    keeps_its_promise("flicker")
+
+
+def test_with_a_white_spot_on_it_the_robot_walks_on_or_is_held() -> None:
+    """When a lamp is mirrored in the robot, the rest of it is enough to walk on, or it counts as covered."""
+    keeps_its_promise("glare")
+
+
+def test_a_hand_over_the_robot_holds_it() -> None:
+    """When a hand covers the robot, it is driven by prediction for 0.15 s at most; you resume when the hand is
+    gone."""
+    keeps_its_promise("hand")
+
+
+def test_a_second_robot_changes_nothing() -> None:
+    """When another robot just like it lies on the plate, the first one is followed on."""
+    keeps_its_promise("second_robot")
+
+
+def test_bits_on_the_plate_change_nothing() -> None:
+    """When specks, fibres and flakes lie about, some of them in the robot's colour, the robot walks on."""
+    keeps_its_promise("debris")
+
+
+@pytest.mark.parametrize("factor", [0.05, 0.5, 10.0])
+def test_however_the_exposure_jumps_the_robot_walks_on_or_is_held(bench: FaultBench, factor: float) -> None:
+    """Never is anything else taken for it; light again, you resume."""
+    bench.walk()
+    reaction = bench.react("exposure_jump", factor=factor)
+    assert (reaction.after, reaction.code) in WALKS_ON_OR_IS_HELD
+    assert estimate_is_true(bench) or bench.snapshot.tracking is not Tracking.LOCKED
+    bench.mend("exposure_jump")
+    if bench.snapshot.rig is RigState.HELD:
+        bench.go_on()
+    assert estimate_is_true(bench)
+
+
+def test_a_blink_of_darkness_is_walked_through(bench: FaultBench) -> None:
+    bench.walk()
+    bench.faults.inject("light_off", duration=0.1)
+    bench.run_for(0.5)
+    assert bench.snapshot.rig is RigState.RUNNING, bench.snapshot.reason
+    assert estimate_is_true(bench)
+
+
+@pytest.mark.parametrize("distance_mm", [12.0, 25.0])
+def test_a_twin_is_not_taken_for_the_robot_that_is_hidden(bench: FaultBench, distance_mm: float) -> None:
+    """When the robot is covered and only its twin is seen, the rig holds until the robot itself is back."""
+    bench.walk()
+    bench.inject("second_robot", distance_mm=distance_mm)
+    bench.run_for(0.3)
+    assert bench.snapshot.rig is RigState.RUNNING, bench.snapshot.reason
+    bench.inject("robot_hidden")
+    for _ in range(60):
+        bench.tick()
+        assert bench.snapshot.tracking is not Tracking.LOCKED or estimate_is_true(bench)
+    assert bench.snapshot.rig is RigState.HELD
+    bench.mend("robot_hidden")
+    bench.go_on()
+    assert estimate_is_true(bench)
+
+
+def estimate_is_true(bench: FaultBench) -> bool:
+    """Whether the estimate is where the robot is, within half a body length."""
+    pose, truth = bench.snapshot.pose, bench.world.body().pose
+    return pose is not None and truth.distance_to(pose.x, pose.y) < HALF_A_LENGTH
 
 
 def test_a_false_sighting_is_not_followed() -> None:

@@ -124,7 +124,8 @@ def test_devices_that_are_not_there_are_each_named(rig_file: Path) -> None:
     for name in ("permission /dev/nothing0", "permission /dev/nothing1", "board", "camera"):
         assert found[name]["level"] == "problem"
     assert "/dev/nothing1" in found["board"]["finding"]
-    assert "v4l:///dev/nothing0" in found["camera"]["finding"]
+    assert "camera /dev/nothing0 is not plugged in" in found["camera"]["finding"]
+    assert found["cameras"]["level"] == "info"
 
 
 def test_a_board_that_is_to_be_found_by_itself_and_is_not_there_is_a_problem(rig_file: Path) -> None:

@@ -12,6 +12,7 @@ STATE = {
     "measurement", "window_px", "tracking", "tracking_age_s", "command", "reference", "error_mm",
     "currents_A", "measured_currents_A", "field_mT", "saturated", "limited_by", "coil_heat", "refused",
     "body_tilt_deg", "run", "loop", "link", "operator",
+    "camera", "tracking_reason", "rivals_px",
 }  # fmt: skip
 
 

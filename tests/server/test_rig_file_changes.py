@@ -199,7 +199,7 @@ async def test_a_camera_that_cannot_be_opened_leaves_the_rig_as_it_was(here):
     text = here.path.read_text()
     answer = await here.patch({"camera": {"uri": "v4l:///dev/nothing"}, "link": {"port": "/dev/nothing"}})
     assert answer.status_code == 409
-    assert "is as it was: camera v4l:///dev/nothing cannot be opened" in answer.json()["detail"]
+    assert "is as it was: camera /dev/nothing is not plugged in" in answer.json()["detail"]
     assert here.path.read_text() == text
     assert (await here.get("/rig"))["camera"]["uri"] == "sim://"
     await here.ready()

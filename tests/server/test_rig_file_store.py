@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from pydantic import ValidationError
 
@@ -222,6 +222,12 @@ def test_a_save_that_is_killed_at_any_instant_leaves_a_whole_file_and_the_one_be
 
 
 numbers = st.floats(0.1, 20.0)
+spans = st.tuples(st.integers(0, 255), st.just(255))
+marks = st.none() | st.fixed_dictionaries({}, optional={"value": spans})
+colours: dict[str, st.SearchStrategy[Any]] = {"saturation": spans, "end_mark": marks}
+profiles = st.dictionaries(
+    st.sampled_from(["lamp", "a dim day", "7"]), st.none() | st.fixed_dictionaries({}, optional=colours)
+)
 change_sets = st.fixed_dictionaries(
     {},
     optional={
@@ -237,9 +243,7 @@ change_sets = st.fixed_dictionaries(
                 "z": st.fixed_dictionaries({}, optional={"inductance_mH": numbers}),
             },
         ),
-        "vision": st.fixed_dictionaries(
-            {}, optional={"saturation": st.tuples(st.integers(0, 255), st.just(255))}
-        ),
+        "vision": st.fixed_dictionaries({}, optional={**colours, "profiles": profiles}),
         "simulation": st.fixed_dictionaries({}, optional={"seed": st.integers(0, 2**31 - 1)}),
     },
 )
@@ -248,12 +252,15 @@ LAYOUTS = [
     EXAMPLE,
     "limits.field_mT = 3.0\ncoils.supply_V = 12 # dotted\n",
     "limits = { field_mT = 3.0 } # inline\n[coils]\n# nothing\n",
+    "[vision.profiles.lamp]\nvalue = [3, 99] # dim\n[vision.profiles.lamp.end_mark]\n[vision.end_mark]\n[robot]\n",
+    "[vision]\nprofiles = { lamp = { value = [3, 99] }, 7 = {} }\n[vision.end_mark]\nvalue = [1, 2]\n",
     "[simulation]\nseed = 4\n\n[coils.z]\ndiameter_mm = 225\nseparation_mm = 110\nturns = 154\n"
     "resistance_ohm = 1.5\ninductance_mH = 14\n[limits]\n[coils.x]\ndiameter_mm = 390\nseparation_mm = 240\n"
     "turns = 314\nresistance_ohm = 2.5\ninductance_mH = 125\n",
 ]
 
 
+@settings(deadline=None)  # tomlkit takes 60 ms for the whole example, and longer on a busy computer
 @given(changes=change_sets, layout=st.sampled_from(LAYOUTS))
 def test_whatever_the_layout_the_text_says_what_was_asked(changes: dict[str, Any], layout: str) -> None:
     before = settings_in(layout, Path("rig.toml"))

@@ -121,7 +121,7 @@ def test_a_blob_of_the_wrong_size_is_no_candidate():
 
 def test_a_coarse_grid_finds_the_place_and_size_roughly():
     image = Painter(OPTICS, SCENE).paint(anywhere(np.random.default_rng(11)), 0)
-    (candidate,) = find(image, WHOLE, RED, REGION, decimation=4)
+    (candidate,) = find(image, WHOLE, RED, REGION, step=4)
     assert math.dist(candidate.centre, sole_blob(image).centre) < 6.0
     assert candidate.area == pytest.approx(sole_blob(image).area, rel=0.4)
 
@@ -136,3 +136,55 @@ def test_robots_of_other_colours_are_measured_as_well(colour: tuple[int, int, in
         Painter(OPTICS, scene).paint(body, 0), ColourRange((hue - 20, hue + 20), (80, 255), (40, 255))
     )
     assert math.dist(blob.centre, OPTICS.to_pixel(body.pose.x, body.pose.y, HEIGHT)) < 0.15
+
+
+@pytest.mark.parametrize(
+    ("colour", "plate", "value", "limit"),
+    [
+        ((225, 228, 226), (38, 36, 34), (150, 255), 0.15),
+        ((30, 30, 32), (200, 203, 204), (0, 80), 0.15),
+        ((120, 122, 121), (225, 228, 226), (60, 150), 0.25),
+    ],
+    ids=["white on slate", "black on white", "grey on white"],
+)
+def test_robots_without_a_colour_are_told_by_their_brightness(
+    colour: tuple[int, int, int], plate: tuple[int, int, int], value: tuple[int, int], limit: float
+):
+    painter = Painter(OPTICS, type(SCENE)(colour=colour, plate=plate, shadow_strength=0.2))
+    thresholds, random = ColourRange((0, 360), (0, 90), value), np.random.default_rng(13)
+    apart = []
+    for index in range(20):
+        body = anywhere(random)
+        u, v = OPTICS.to_pixel(body.pose.x, body.pose.y, HEIGHT)
+        window = (
+            max(round(u) - 40, 0),
+            max(round(v) - 40, 0),
+            min(round(u) + 40, 640),
+            min(round(v) + 40, 480),
+        )
+        (blob,) = detect(painter.paint(body, index), window, thresholds, REGION)
+        apart.append(math.dist(blob.centre, (u, v)))
+    assert np.mean(apart) <= limit
+
+
+def test_a_flicker_band_along_the_body_does_not_pull_the_centre():
+    random, painter = np.random.default_rng(14), Painter(OPTICS, SCENE)
+    rows = 1.0 + 0.35 * np.cos(np.arange(480) * (2.0 * math.pi * 1.5 / 480))[:, None, None]
+    apart = []
+    for index in range(30):
+        body = anywhere(random)
+        image = np.clip(np.rint(painter.paint(body, index) * rows), 0, 255).astype(np.uint8)
+        blob = sole_blob(image)
+        apart.append(math.dist(blob.centre, OPTICS.to_pixel(body.pose.x, body.pose.y, HEIGHT)))
+    assert np.mean(apart) <= 0.1
+
+
+@pytest.mark.parametrize("shift", [(0, 0), (10, -15), (-8, 12), (4, 6)])
+def test_glare_on_the_robot_does_not_pull_its_centre(shift: tuple[int, int]):
+    body = anywhere(np.random.default_rng(15))
+    u, v = OPTICS.to_pixel(body.pose.x, body.pose.y, HEIGHT)
+    columns, rows = np.meshgrid(np.arange(640), np.arange(480))
+    spot = 350.0 * np.exp(-0.5 * ((columns - u - shift[0]) ** 2 + (rows - v - shift[1]) ** 2) / 2.5**2)
+    image = Painter(OPTICS, SCENE).paint(body, 0) + spot[:, :, None]
+    blob = sole_blob(np.clip(np.rint(image), 0, 255).astype(np.uint8))
+    assert math.dist(blob.centre, (u, v)) <= 0.25

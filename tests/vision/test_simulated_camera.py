@@ -1,16 +1,20 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 import threading
 import time
 
+import cv2
 import numpy as np
 import pytest
 from scripted_scene import OPTICS, SCENE, ScriptedWorld, circling
 
 from control.model import Frame
 from vision.simulated.camera import AsFastAsItGoes, RealTime, SyntheticCamera
+from vision.simulated.disturbance import Disturbance
 from vision.simulated.rendering import Painter
+from vision.simulated.scenes import SCENES
 
 TIMEOUT = 0.1
 
@@ -175,8 +179,8 @@ def test_a_world_that_cannot_catch_up_goes_on_from_where_it_is():
 
 
 def test_in_real_time_frames_carry_the_monotonic_clock_and_keep_the_pace():
-    source = SyntheticCamera(ScriptedWorld(), OPTICS, SCENE, RealTime())
     start = time.monotonic()
+    source = SyntheticCamera(ScriptedWorld(), OPTICS, SCENE, RealTime())
     read = frames(source, 6)
     assert time.monotonic() - start >= 5 / 60 + 0.035 - 2e-3
     assert all(start - 1e-3 <= frame.captured_at <= time.monotonic() - 0.034 for frame in read)
@@ -214,3 +218,76 @@ def test_a_board_with_its_own_clock_is_never_made_to_wait():
     time.sleep(0.15)
     assert source.now() - before >= 0.15
     source.close()
+
+
+# What disturbs it
+
+
+def picture(source: SyntheticCamera) -> np.ndarray:
+    (frame,) = frames(source, 1)
+    return frame.image.astype(float)
+
+
+def reds(image: np.ndarray) -> list[tuple[float, float]]:
+    """Centres (u, v) px of what has the robot's red and at least half its size."""
+    mask = ((image[:, :, 2] - image[:, :, 0] > 60) & (image[:, :, 2] - image[:, :, 1] > 60)).astype(np.uint8)
+    _, _, statistics, centres = cv2.connectedComponentsWithStats(mask)
+    return [tuple(c) for c, s in zip(centres[1:], statistics[1:], strict=True) if s[cv2.CC_STAT_AREA] > 250]
+
+
+def test_the_scene_that_is_called_clean_is_none() -> None:
+    staged = SyntheticCamera(ScriptedWorld(), OPTICS, SCENE, staged=SCENES["clean"])
+    for one, other in zip(frames(staged, 5), frames(camera(), 5), strict=True):
+        assert np.array_equal(one.image, other.image)
+
+
+def test_a_scene_before_the_camera_plays_for_ever_and_alike() -> None:
+    once, again = (
+        SyntheticCamera(ScriptedWorld(), OPTICS, SCENE, staged=SCENES["standing_twins"]) for _ in range(2)
+    )
+    for one, other in zip(frames(once, 5), frames(again, 5), strict=True):
+        assert np.array_equal(one.image, other.image)
+        assert len(reds(one.image.astype(float))) == 4
+
+
+@pytest.mark.parametrize(
+    ("switch", "value"), [("light", 0.03), ("exposure", 0.5), ("flicker", 0.5), ("glare", True), ("litter", True)]
+)  # fmt: skip
+def test_what_disturbs_the_picture_is_gone_when_it_is_taken_away(switch: str, value: object) -> None:
+    disturbed, usual = camera(), camera()
+    setattr(disturbed.disturbance, switch, value)
+    assert not np.array_equal(picture(disturbed), picture(usual))
+    setattr(disturbed.disturbance, switch, getattr(Disturbance(), switch))
+    assert np.array_equal(picture(disturbed), picture(usual))
+
+
+def test_half_the_exposure_halves_every_grey_level() -> None:
+    darkened, usual = camera(), camera()
+    darkened.disturbance.exposure = 0.5
+    assert picture(darkened).mean() == pytest.approx(0.5 * picture(usual).mean(), rel=0.01)
+
+
+def test_without_light_the_picture_is_nearly_black() -> None:
+    source = camera()
+    source.disturbance.light = 0.03
+    assert picture(source).mean() < 15, "the noise has a mean of 12"
+
+
+def test_a_twin_lies_as_far_away_as_asked_and_stays_where_it_is() -> None:
+    source = camera()
+    source.disturbance.twin = 0.020
+    first, later = (reds(picture(source)), [reds(image) for image in map(picture, [source] * 60)][-1])
+    ((u0, v0), (u1, v1)) = first
+    assert math.hypot(u1 - u0, v1 - v0) == pytest.approx(0.020 * OPTICS.scale_at(0.0, 0.0, 0.003), rel=0.03)
+    stayed = [one for one in later if any(math.dist(one, before) < 0.5 for before in first)]
+    assert len(stayed) == 1
+
+
+def test_a_hand_comes_in_within_a_fifth_of_a_second_and_stays_over_the_robot() -> None:
+    source = camera()
+    source.disturbance.hand = True
+    seen = [len(reds(picture(source))) for _ in range(40)]
+    assert seen[0] == 1
+    assert seen[13:] == [0] * 27
+    source.disturbance.hand = False
+    assert len(reds(picture(source))) == 1

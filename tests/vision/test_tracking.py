@@ -9,6 +9,8 @@ from scripted_scene import HEIGHT, LENGTH, OPTICS, SCENE, anywhere
 
 from control.model import PIVOT_A, Body, Expectation, Frame, Observation, Pose, Tracking, wrap
 from vision.simulated.rendering import Painter
+from vision.tracking.memory import ELSEWHERE_AFTER
+from vision.tracking.reasons import AGAIN, ELSEWHERE, NOT_THERE
 from vision.tracking.tracker import ColourTracker, TrackerSettings
 
 PERIOD = 1 / 60
@@ -22,6 +24,11 @@ def tracker(**settings) -> ColourTracker:
 
 def frame(body: Body | None, index: int) -> Frame:
     return Frame(PAINTER.paint(body, index), index * PERIOD, index)
+
+
+def found(follower: ColourTracker, body: Body) -> Observation:
+    """Three pictures of a robot of which nothing is known."""
+    return [follower.update(frame(body, index), None) for index in range(3)][-1]
 
 
 def expect(body: Body, sigma: float = 2e-4) -> Expectation:
@@ -93,34 +100,39 @@ def test_of_the_two_headings_the_expected_one_is_taken():
 
 
 def test_without_an_expectation_the_last_heading_decides_and_before_it_the_hint():
-    assert abs(wrap(pose_of(tracker(heading_hint=0.5).update(frame(CENTRED, 0), None)).heading - 0.4)) < 0.02
+    assert abs(wrap(pose_of(found(tracker(heading_hint=0.5), CENTRED)).heading - 0.4)) < 0.02
     follower = tracker(heading_hint=0.5 + math.pi)
-    for index in range(40):
+    found(follower, CENTRED)
+    for index in range(3, 40):
         body = moved(CENTRED, turn=0.1 * index)
         pose = pose_of(follower.update(frame(body, index), None))
         assert abs(wrap(pose.heading - body.pose.heading - math.pi)) < 0.03
     follower.reset()
-    assert abs(wrap(pose_of(follower.update(frame(CENTRED, 0), None)).heading - 0.4 - math.pi)) < 0.02
+    assert abs(wrap(pose_of(found(follower, CENTRED)).heading - 0.4 - math.pi)) < 0.02
 
 
-def test_a_robot_anywhere_in_the_picture_is_found_without_an_expectation():
-    random, follower = np.random.default_rng(22), tracker()
-    for index in range(60):
-        body = anywhere(random)
-        pose = pose_of(follower.update(frame(body, index), None))
-        assert pose.distance_to(body.pose.x, body.pose.y) < 1e-4
+def test_a_robot_anywhere_in_the_picture_is_found_without_an_expectation_at_the_third_picture():
+    random = np.random.default_rng(22)
+    for _ in range(40):
+        follower, body = tracker(), anywhere(random)
+        seen = [follower.update(frame(body, index), None) for index in range(3)]
+        assert [each.tracking for each in seen] == [Tracking.LOST, Tracking.LOST, Tracking.LOCKED]
+        assert seen[0].reason == seen[1].reason == AGAIN
+        assert pose_of(seen[2]).distance_to(body.pose.x, body.pose.y) < 1e-4
 
 
-def test_a_hidden_robot_is_predicted_for_150_ms_then_lost_and_found_when_it_is_back():
+def test_a_hidden_robot_is_predicted_for_150_ms_then_lost_and_found_at_the_second_picture_of_it():
     follower = tracker()
     assert follower.update(frame(None, 0), None).tracking is Tracking.LOST
-    assert follower.update(frame(CENTRED, 1), None).tracking is Tracking.LOCKED
-    for index in range(2, 30):
+    found(follower, CENTRED)
+    for index in range(3, 30):
         observation = follower.update(frame(None, index), expect(CENTRED))
-        gone = (index - 1) * PERIOD
+        gone = (index - 2) * PERIOD
         assert observation.tracking is (Tracking.PREDICTED if gone <= 0.15 + 1e-9 else Tracking.LOST)
         assert observation.measurement is None
-    assert follower.update(frame(CENTRED, 30), None).tracking is Tracking.LOCKED
+        assert observation.reason == NOT_THERE
+    assert follower.update(frame(CENTRED, 30), None).reason == AGAIN
+    assert follower.update(frame(CENTRED, 31), None).tracking is Tracking.LOCKED
 
 
 def test_an_empty_plate_never_yields_a_lock():
@@ -130,20 +142,39 @@ def test_an_empty_plate_never_yields_a_lock():
         assert follower.update(frame(None, index), expected).tracking is Tracking.LOST
 
 
-def test_a_blob_far_from_the_expected_place_is_not_taken_for_the_robot():
+def test_a_locked_window_fits_the_body_and_widens_with_its_speed():
     follower = tracker()
-    follower.update(frame(CENTRED, 0), expect(CENTRED))
-    for index in range(1, 12):
-        observation = follower.update(frame(moved(CENTRED, dx=0.03), index), expect(CENTRED))
+    found(follower, CENTRED)
+    u0, v0, u1, v1 = follower.update(
+        frame(CENTRED, 3), replace(expect(CENTRED, 1e-4), heading_sigma=0.02)
+    ).window
+    assert (u1 - u0) * (v1 - v0) < 62 * 62
+    faster = moved(CENTRED, dx=0.004)
+    expected = replace(expect(faster, 1e-4), heading_sigma=0.02)
+    wide = follower.update(frame(faster, 4), expected).window
+    assert wide[2] - wide[0] > u1 - u0 + 5
+
+
+def test_a_blob_far_from_the_expected_place_is_not_taken_for_the_robot_before_it_may_have_been_carried_there():
+    follower, far = tracker(), moved(CENTRED, dx=0.03)
+    found(follower, CENTRED)
+    for index in range(3, 12):
+        observation = follower.update(frame(far, index), expect(CENTRED))
         assert observation.measurement is None
-    assert follower.update(frame(moved(CENTRED, dx=0.03), 12), None).tracking is Tracking.LOCKED
+        assert observation.reason == ELSEWHERE
+    taken_at = next(
+        index for index in range(12, 200) if follower.update(frame(far, index), None).measurement is not None
+    )
+    assert ELSEWHERE_AFTER < (taken_at - 2) * PERIOD < ELSEWHERE_AFTER + 4 * PERIOD
 
 
-def test_a_robot_that_was_pushed_by_less_than_its_length_is_found_again_after_three_misses():
-    follower, pushed = tracker(), moved(CENTRED, dx=0.008)
-    follower.update(frame(CENTRED, 0), expect(CENTRED))
-    found = [follower.update(frame(pushed, index), expect(CENTRED)).measurement for index in range(1, 5)]
-    assert [each is not None for each in found] == [False, False, False, True]
+def test_a_robot_that_was_pushed_is_not_where_it_is_expected_and_soon_found_where_it_is():
+    follower, pushed = tracker(), moved(CENTRED, dx=0.005)
+    found(follower, CENTRED)
+    for index in range(3, 12):
+        assert follower.update(frame(pushed, index), expect(CENTRED)).measurement is None
+    seen = [follower.update(frame(pushed, index), None) for index in range(12, 14)]
+    assert pose_of(seen[1]).distance_to(pushed.pose.x, pushed.pose.y) < 1e-4
 
 
 def test_of_two_robots_the_one_at_the_expected_place_is_taken():
@@ -176,9 +207,17 @@ def test_a_picture_of_another_size_than_the_calibrations_is_not_looked_at(shape:
 
 @pytest.mark.parametrize("wrong", [math.nan, math.inf])
 def test_an_expectation_that_is_not_finite_counts_as_none(wrong: float):
-    expectation = Expectation(replace(CENTRED.pose, x=wrong), 1e-4)
-    assert pose_of(tracker().update(frame(CENTRED, 0), expectation)).distance_to(0.010, -0.020) < 1e-4
-    assert tracker().update(frame(CENTRED, 0), Expectation(CENTRED.pose, wrong)).window == (0, 0, 640, 480)
+    for expectation in (Expectation(replace(CENTRED.pose, x=wrong), 1e-4), Expectation(CENTRED.pose, wrong)):
+        observation = tracker().update(frame(CENTRED, 0), expectation)
+        assert observation.window == (0, 0, 640, 480)
+        assert observation.reason == AGAIN
+
+
+def test_a_heading_sigma_that_is_no_number_widens_the_window_and_breaks_nothing():
+    follower = tracker()
+    found(follower, CENTRED)
+    expectation = replace(expect(CENTRED), heading_sigma=math.nan)
+    assert pose_of(follower.update(frame(CENTRED, 3), expectation)).distance_to(0.010, -0.020) < 1e-4
 
 
 def test_the_mask_shows_the_robot_and_nothing_else():

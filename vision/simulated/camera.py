@@ -13,9 +13,13 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from control.model import Body, Frame
+from control.model import Body, CameraNote, Frame
 from vision.camera_model import CameraModel
+from vision.simulated.board_view import BoardView
+from vision.simulated.disturbance import Disturbance
 from vision.simulated.rendering import Painter, SceneSettings
+from vision.simulated.scenes import Scene
+from vision.simulated.sight import Sight
 
 __all__ = ["AsFastAsItGoes", "Disturbance", "Pace", "RealTime", "SceneSettings", "SyntheticCamera", "World"]
 
@@ -109,26 +113,6 @@ class RealTime:
         return self._looked
 
 
-@dataclass(slots=True)
-class Disturbance:
-    """What is wrong with the simulated camera; may be changed at any time, from any thread.
-
-    hidden: the robot is not in the picture.  frozen: every frame repeats the last picture, with new times.
-    unplugged: no frames.  extra_latency: added to the scene's latency, s.
-    lost: share of the frames that never arrive.  mirrored: left is right.  cropped: half as wide and high.
-    timeless: the capture time is NaN.
-    """
-
-    hidden: bool = False
-    frozen: bool = False
-    unplugged: bool = False
-    extra_latency: float = 0.0
-    lost: float = 0.0
-    mirrored: bool = False
-    cropped: bool = False
-    timeless: bool = False
-
-
 @dataclass(frozen=True, slots=True)
 class Exposure:
     """What was in front of the camera at one capture time (rig clock, s)."""
@@ -142,14 +126,23 @@ class SyntheticCamera:
     """Satisfies the loop's camera protocol; the world moves only while somebody reads."""
 
     simulated = True
+    identity = "simulated camera"
+    trouble = ""
 
     def __init__(
-        self, world: World, optics: CameraModel, scene: SceneSettings | None = None, pace: Pace | None = None
+        self,
+        world: World,
+        optics: CameraModel,
+        scene: SceneSettings | None = None,
+        pace: Pace | None = None,
+        staged: Scene | None = None,
     ) -> None:
+        """staged: a scene that is played in front of the camera, for ever."""
         self.disturbance = Disturbance()
-        self._scene = scene or SceneSettings()
+        self._scene = scene or SceneSettings() if staged is None else staged.over(scene or SceneSettings())
         self._world = world
         self._painter = Painter(optics, self._scene)
+        self._sight = Sight(self.disturbance, optics, self._scene, staged, world.body())
         self._pace = pace or AsFastAsItGoes()
         self._pace.begin(world.now)
         self._first = world.now
@@ -165,6 +158,13 @@ class SyntheticCamera:
         """The clock that stamps the frames: world time, or the monotonic clock in real time, s."""
         return self._pace.now(self._world.now)
 
+    def require(self) -> None:
+        """It is there as long as its world is."""
+
+    def take_notes(self) -> list[CameraNote]:
+        """What it does is as asked."""
+        return []
+
     def read(self, timeout: float) -> Frame | None:
         """The newest frame when it is delivered; None when none comes within `timeout` (rig time, s)."""
         if self._closed:
@@ -179,8 +179,11 @@ class SyntheticCamera:
         self._pass_until(self._due(exposure.captured_at))
         if self._closed:
             return None
-        captured_at = math.nan if self.disturbance.timeless else exposure.captured_at
-        return Frame(self._deformed(image), captured_at, exposure.index)
+        return Frame(self._deformed(image), self._stamp(exposure), exposure.index)
+
+    def show_board(self, view: BoardView | None) -> None:
+        """Lays a printed board over the robot, or takes it away; from any thread. Raises ValueError."""
+        self._painter.show_board(view)
 
     def pass_time(self, duration: float) -> None:
         """Lets rig time pass (s) without a picture: whoever should read is busy with something else."""
@@ -196,6 +199,13 @@ class SyntheticCamera:
         """Ends a read that is waiting; later reads return None."""
         self._closed = True
         self._pace.close()
+
+    def _stamp(self, exposure: Exposure) -> float:
+        """The capture time that a frame that is delivered now bears, s."""
+        if self.disturbance.timeless:
+            return math.nan
+        assumed = self._scene.assumed_latency
+        return exposure.captured_at if assumed is None else self.now() - assumed
 
     def _due(self, captured_at: float) -> float:
         return captured_at + self._scene.latency + self.disturbance.extra_latency
@@ -249,8 +259,9 @@ class SyntheticCamera:
 
     def _picture(self, exposure: Exposure) -> NDArray[np.uint8]:
         if not (self.disturbance.frozen and self._last_image is not None):
+            extras = self._sight.extras(exposure.index, exposure.body)
             body = None if self.disturbance.hidden else exposure.body
-            self._last_image = self._painter.paint(body, exposure.index)
+            self._last_image = self._painter.paint(body, exposure.index, extras)
         return self._last_image
 
     def _deformed(self, image: NDArray[np.uint8]) -> NDArray[np.uint8]:

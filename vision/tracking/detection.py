@@ -3,22 +3,30 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 import cv2
 import numpy as np
 from cv2.typing import MatLike
 from numpy.typing import NDArray
 
-from vision.tracking.colour import ColourRange, Image
+from vision.tracking.colour import Colour, Image, RobotColours
+from vision.tracking.coverage import Masks, cover
+from vision.tracking.glare import completed
+from vision.tracking.shape import Ellipse
 
 Window = tuple[int, int, int, int]
 """Part of a picture (u0, v0, u1, v1), px: u0 <= u < u1, v0 <= v < v1."""
 
-RIM = 3
-"""The blurred edge of a blob reaches that far out of its mask, px (3 sigma of 0.7 px, and half a pixel)."""
-LEAST_CHROMA = 20.0
-"""Below this difference in colour, grey levels, brightness has to tell the blob from its surroundings."""
+SURROUNDINGS = 6
+"""So far round its box the ground beside a blob is looked at, px: its blurred rim, and two pixels more."""
+LEAST_MARK = 0.03
+"""A mark covers at least this share of the robot; less is noise."""
+LEAST_MARK_PLACE = 0.5
+"""A mark on an end lies at least this far from the middle, in the body's radii of gyration along its axis (the end
+itself is at 1.7)."""
 MOST_BLOBS = 64
 """A picture with more blobs than this, such as noise in the dark, yields the largest ones."""
 
@@ -49,13 +57,23 @@ class RegionFilter:
         return self.area_min <= area <= self.area_max
 
 
+class Mask(Protocol):
+    """Which pixels are of the robot's colour; `ColourRange` and `RobotColours` are such."""
+
+    def mask(self, image: Image) -> Image: ...
+
+
 @dataclass(frozen=True, slots=True)
 class Candidate:
-    """A blob before it is measured: outline (px of its window), area (px^2), box (px of the picture)."""
+    """A blob before it is measured: outline (px of its window), area (px^2), box (px of the picture).
+
+    others: the outlines of everything else of the robot's colour in the window, of whatever size.
+    """
 
     outline: NDArray[np.int32]
     area: float
     box: Window
+    others: tuple[NDArray[np.int32], ...] = ()
 
     @property
     def centre(self) -> tuple[float, float]:
@@ -70,7 +88,9 @@ class Blob:
 
     centre: (u, v) px.  axis: direction of the long axis in the picture, rad in [0, pi), u to v.
     area: px^2, of the mask.  elongation: long over short radius of gyration.
-    corners: of the oriented rectangle round the mask, four (u, v) px.  box: (u0, v0, u1, v1) px.
+    corners: of the rectangle with the same second moments, four (u, v) px.  box: (u0, v0, u1, v1) px.
+    mean_colour, ground: of the pixels it covers whole, and of what lies round it, BGR grey levels.
+    end: +1 when the mark on end A lies towards the axis' direction, -1 when the other way, 0 when not told.
     """
 
     centre: tuple[float, float]
@@ -79,102 +99,101 @@ class Blob:
     elongation: float
     corners: tuple[tuple[float, float], ...]
     box: Window
+    mean_colour: Colour = (0.0, 0.0, 0.0)
+    ground: Colour = (0.0, 0.0, 0.0)
+    end: int = 0
 
 
-def detect(image: Image, window: Window, colour: ColourRange, region: RegionFilter) -> list[Blob]:
+def detect(image: Image, window: Window, colour: Mask, region: RegionFilter) -> list[Blob]:
     """The blobs of the colour and size asked for within the window, largest first, each measured."""
     return [measure(image, window, candidate) for candidate in find(image, window, colour, region)]
 
 
-def find(
-    image: Image, window: Window, colour: ColourRange, region: RegionFilter, decimation: int = 1
-) -> list[Candidate]:
+def find(image: Image, window: Window, colour: Mask, region: RegionFilter, step: int = 1) -> list[Candidate]:
     """Blobs that pass the filter, largest first; only the window is converted and looked at.
 
-    decimation: looks at every n-th pixel of every n-th row; places are then good to n px.
+    step: looks at every n-th pixel of every n-th row; places are then good to n px.
     """
     u0, v0, u1, v1 = window
     part = image[v0:v1, u0:u1]
-    if decimation > 1:
-        small = ((u1 - u0) // decimation, (v1 - v0) // decimation)
+    if step > 1:
+        small = (max((u1 - u0) // step, 1), max((v1 - v0) // step, 1))
         part = cv2.resize(part, small, interpolation=cv2.INTER_NEAREST)
-    mask = colour.mask(part)
-    outlines, _ = cv2.findContours(mask, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
-    candidates = [_candidate(np.asarray(outline), window, decimation) for outline in outlines]
-    passing = [candidate for candidate in candidates if region.passes(candidate.area)]
-    return sorted(passing, key=lambda candidate: -candidate.area)[:MOST_BLOBS]
+    outlines, _ = cv2.findContours(colour.mask(part), cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
+    areas = [_area(outline) * step * step for outline in outlines]
+    passing = [index for index, area in enumerate(areas) if region.passes(area)]
+    largest = sorted(passing, key=lambda index: -areas[index])[:MOST_BLOBS]
+    return [_candidate(index, outlines, areas[index], window, step) for index in largest]
 
 
-def _candidate(outline: NDArray, window: Window, decimation: int) -> Candidate:
-    """The area counts whole pixels; the polygon through the outline's pixel centres cuts those in half."""
-    area = cv2.contourArea(outline) + 0.5 * len(outline) + 1.0
+def _area(outline: MatLike) -> float:
+    """Counts whole pixels, px^2; the polygon through the outline's pixel centres cuts those in half."""
+    return cv2.contourArea(outline) + 0.5 * len(outline) + 1.0
+
+
+def _candidate(index: int, outlines: Sequence[MatLike], area: float, window: Window, step: int) -> Candidate:
+    outline = np.asarray(outlines[index], np.int32)
     u, v, width, height = cv2.boundingRect(outline)
-    left, top = window[0] + u * decimation, window[1] + v * decimation
-    box = (left, top, left + width * decimation, top + height * decimation)
-    return Candidate(outline, area * decimation * decimation, box)
+    left, top = window[0] + u * step, window[1] + v * step
+    others = tuple(np.asarray(other, np.int32) for other in (*outlines[:index], *outlines[index + 1 :]))
+    return Candidate(outline, area, (left, top, left + width * step, top + height * step), others)
 
 
-def measure(image: Image, window: Window, candidate: Candidate) -> Blob:
-    """Centre and axis from the moments of how much each pixel differs from the surroundings towards the blob.
+def measure(image: Image, window: Window, candidate: Candidate, colours: RobotColours | None = None) -> Blob:
+    """Centre and axis from the moments of the share of each pixel that the blob covers.
 
-    At an edge this difference is the share of the pixel that the blob covers, so the moments are those of the
-    true shape; a threshold or the rectangle's corners would round them to whole pixels.
+    The moments are then those of the true shape; a threshold or the rectangle's corners would round them to
+    whole pixels.  colours: tells which end bears the mark, where there is one.
     """
-    u0, v0, u1, v1 = _widened(candidate.box, RIM + 1, image)
-    local = np.add(candidate.outline, (window[0] - u0, window[1] - v0))
-    inside = np.zeros((v1 - v0, u1 - u0), np.uint8)
-    cv2.drawContours(inside, [local], -1, 255, cv2.FILLED)
-    moments = cv2.moments(_coverage(image[v0:v1, u0:u1], inside))
-    mass = moments["m00"]
-    if not mass > 0.0:
+    u0, v0, u1, v1 = widened(candidate.box, SURROUNDINGS, image)
+    patch, offset = image[v0:v1, u0:u1], (window[0] - u0, window[1] - v0)
+    inside = _filled([candidate.outline], patch, offset)
+    others = _filled(candidate.others, patch, offset) if candidate.others else None
+    mark = None if colours is None else _mark(patch, inside, colours)
+    found = cover(patch, Masks(inside, others, mark))
+    moments = cv2.moments(found.share if found.hidden is None else completed(found.share, found.hidden))
+    if not moments["m00"] > 0.0:
         moments = cv2.moments(inside, binaryImage=True)
-        mass = moments["m00"]
-    long, short, axis = _ellipse(moments["mu20"] / mass, moments["mu11"] / mass, moments["mu02"] / mass)
-    corners = cv2.boxPoints(cv2.minAreaRect(local))
+    ellipse = Ellipse.of(moments)
     return Blob(
-        centre=(u0 + moments["m10"] / mass, v0 + moments["m01"] / mass),
-        axis=axis,
+        centre=(u0 + ellipse.u, v0 + ellipse.v),
+        axis=ellipse.axis,
         area=candidate.area,
-        elongation=math.sqrt(long / max(short, 1e-9)),
-        corners=tuple((u0 + float(u), v0 + float(v)) for u, v in corners),
+        elongation=ellipse.elongation,
+        corners=ellipse.corners(u0, v0),
         box=candidate.box,
+        mean_colour=found.blob,
+        ground=found.ground,
+        end=0 if mark is None else _end(mark, ellipse),
     )
 
 
-def _coverage(patch: Image, inside: Image) -> MatLike:
-    """How much of each pixel is the blob, float32 in units of no matter; 0 beyond the blob's blurred rim."""
-    reach = cv2.dilate(inside, _RIM_SHAPE)
-    blob, ground = cv2.mean(patch, inside)[:3], cv2.mean(patch, cv2.bitwise_not(reach))[:3]
-    b, g, r = _towards(blob, ground)
-    offset = -(b * ground[0] + g * ground[1] + r * ground[2])
-    difference = cv2.transform(patch.astype(np.float32), np.array([[b, g, r, offset]], np.float32))
-    return cv2.copyTo(difference, reach)
+def _filled(outlines: Sequence[MatLike], patch: Image, offset: tuple[int, int]) -> MatLike:
+    """255 within the outlines, holes included; offset: from the outlines' origin to the patch's, px."""
+    mask = np.zeros(patch.shape[:2], np.uint8)
+    return cv2.drawContours(mask, outlines, -1, 255, cv2.FILLED, cv2.LINE_8, None, 0, offset)
 
 
-_RIM_SHAPE = np.ones((2 * RIM + 1, 2 * RIM + 1), np.uint8)
+def _mark(patch: Image, inside: MatLike, colours: RobotColours) -> MatLike | None:
+    """255 on the mark; None when too little of it is seen."""
+    if colours.end_mark is None:
+        return None
+    mark = cv2.bitwise_and(colours.end_mark.mask(patch), inside)
+    return mark if cv2.countNonZero(mark) >= LEAST_MARK * cv2.countNonZero(inside) else None
 
 
-def _towards(blob: tuple[float, ...], ground: tuple[float, ...]) -> tuple[float, float, float]:
-    """Direction in BGR from the surroundings to the blob, unit length.
-
-    Without its grey part where the colours allow it, so that a shadow on a grey plate weighs nothing.
-    """
-    b, g, r = (one - other for one, other in zip(blob, ground, strict=True))
-    grey = (b + g + r) / 3.0
-    chroma = math.hypot(b - grey, g - grey, r - grey)
-    if chroma >= LEAST_CHROMA:
-        return (b - grey) / chroma, (g - grey) / chroma, (r - grey) / chroma
-    length = max(math.hypot(b, g, r), 1e-9)
-    return b / length, g / length, r / length
+def _end(mark: MatLike, ellipse: Ellipse) -> int:
+    """Towards which end of the axis the mark lies: +1 or -1; 0 when it is not at an end."""
+    moments = cv2.moments(mark, binaryImage=True)
+    du, dv = moments["m10"] / moments["m00"] - ellipse.u, moments["m01"] / moments["m00"] - ellipse.v
+    along = du * math.cos(ellipse.axis) + dv * math.sin(ellipse.axis)
+    if not abs(along) >= LEAST_MARK_PLACE * math.sqrt(max(ellipse.long, 0.0)):
+        return 0
+    return 1 if along > 0.0 else -1
 
 
-def _ellipse(mu20: float, mu11: float, mu02: float) -> tuple[float, float, float]:
-    """Principal second moments, long and short (px^2), and direction of the long one, rad in [0, pi)."""
-    mean, spread = 0.5 * (mu20 + mu02), math.hypot(0.5 * (mu20 - mu02), mu11)
-    return mean + spread, mean - spread, 0.5 * math.atan2(2.0 * mu11, mu20 - mu02) % math.pi
-
-
-def _widened(box: Window, by: int, image: Image) -> Window:
+def widened(box: Window, by: int, image: Image) -> Window:
+    """The box and `by` px round it, within the picture."""
     height, width = image.shape[:2]
     u0, v0, u1, v1 = box
     return max(u0 - by, 0), max(v0 - by, 0), min(u1 + by, width), min(v1 + by, height)

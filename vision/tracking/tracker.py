@@ -3,75 +3,37 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import replace
 
-from control.model import (
-    PIVOT_A,
-    Expectation,
-    Frame,
-    Measurement,
-    Observation,
-    Pivot,
-    Pose,
-    Tracking,
-    wrap,
-)
+from control.model import Expectation, Frame, Observation, Tracking
 from vision.camera_model import CameraModel
-from vision.tracking.colour import ColourRange, Image
-from vision.tracking.detection import Blob, Candidate, RegionFilter, Window, find, measure
+from vision.tracking.attitude import FLAT, Attitude, PoseReader, remembered_side
+from vision.tracking.colour import Image
+from vision.tracking.detection import Blob, Window
+from vision.tracking.heading import EndsMemory
+from vision.tracking.identity import Owner
+from vision.tracking.memory import ELSEWHERE_AFTER, Company, Looks, Memory, Steadiness, sigma_after
+from vision.tracking.reasons import AGAIN, OTHER_SIZE, reason_for
+from vision.tracking.recognition import Found, Recogniser, Robot, View
+from vision.tracking.seeking import Seeker
+from vision.tracking.settings import RED, TrackerSettings
+from vision.tracking.windows import SIGMAS, SPARE, Place, window_around
 
-RED = ColourRange(hue=(340, 20), saturation=(110, 255), value=(60, 255))
-"""The shipped robot's colour: red in any light that leaves it a third of full brightness."""
-WINDOW_SIGMAS = 4.0
-"""The window holds the robot when its place is that many standard deviations off: 1 in 3 000 is missed."""
-MISSES_BEFORE_WIDE_SEARCH = 3
-"""After as many windows without the robot the whole frame is searched."""
-COARSE_WIDTH = 2.5
-"""The whole frame is searched on the coarsest grid that leaves the body this wide, in grid points."""
-COARSE_AREA_TOLERANCE = 2.0
-"""On that grid an area may be wrong by this factor."""
-LARGEST_TILT = math.radians(60.0)
-"""An expected tilt beyond this is none that the rig can command; the robot is then taken as flat."""
-TRIES = 4
-"""So many candidates of a coarse search are looked at closely, best first."""
+__all__ = ["RED", "ColourTracker", "TrackerSettings"]
 
-
-@dataclass(frozen=True, slots=True)
-class TrackerSettings:
-    """What the robot looks like and how patient the tracker is.
-
-    colour: thresholds.  region: area of the body seen from above, m^2.
-    elongation_min: long over short radius of gyration; a rounder blob has no axis to speak of.
-    margin: how far beyond the expected uncertainty the robot may be, m.
-    heading_hint: which of two opposite headings to take when nothing else tells, rad.
-    predict_for: how long after the last sighting the robot counts as predicted, s (faults.md: 150 ms).
-    """
-
-    colour: ColourRange = field(default=RED)
-    region: RegionFilter = field(default=RegionFilter(12e-6, 90e-6))
-    elongation_min: float = 1.4
-    margin: float = 0.003
-    heading_hint: float = 0.5 * math.pi
-    predict_for: float = 0.150
-
-
-@dataclass(frozen=True, slots=True)
-class Search:
-    """Where to look (window, px) and how far from a place (u, v; px) a blob may be (inf: anywhere)."""
-
-    window: Window
-    centre: tuple[float, float]
-    reach: float
-
-
-@dataclass(frozen=True, slots=True)
-class Attitude:
-    """How the robot is expected to stand: heading (rad), pressed end, elevation of the other end (rad)."""
-
-    heading: float
-    pivot: Pivot
-    tilt: float
+FLOOR = 0.04
+"""Standard deviation of a sighting about the best prediction, body lengths: ten times the measured noise, for what
+the estimator's model does not know."""
+HURRY = 0.25
+"""Share of its way since the last sighting by which a robot may be off its prediction: a fast one needs more room."""
+UNKNOWN_HALF = 0.6
+"""Half side of a window that holds a body of unknown heading, body lengths."""
+FIRST_SIGHTINGS = 3
+"""A robot that was never seen, or may have been carried anywhere, counts from the third picture on that agrees."""
+NEXT_SIGHTINGS = 2
+"""One that was lost and is back counts from the second one on."""
+WATCH_EVERY = 0.2
+"""While the robot is followed, the whole picture is looked at after so long, s, for others that look like it."""
 
 
 class ColourTracker:
@@ -84,158 +46,154 @@ class ColourTracker:
         self, camera_model: CameraModel, settings: TrackerSettings, robot_length: float, body_height: float
     ) -> None:
         self._camera = camera_model
-        self._settings = settings
-        self._length = robot_length
         self._height = body_height
         self._scale = camera_model.scale_at(0.0, 0.0, body_height)
-        self._region = settings.region.scaled(self._scale**2)
+        self._length = robot_length * self._scale
         self._whole: Window = (0, 0, *camera_model.size)
-        self._decimation = self._coarsest()
+        self._reader = PoseReader(camera_model, robot_length, body_height, self._scale)
+        self._company = Company(self._length)
+        self._memory: Memory | None = None
+        self.retune(settings)
         self.reset()
 
+    def retune(self, settings: TrackerSettings) -> None:
+        """Other colours or sizes from the next frame on; where the robot is stays known, its looks are forgotten."""
+        self._settings = settings
+        region = settings.region.scaled(self._scale**2)
+        seeker = Seeker(settings.colours, region, settings.elongation_min, self._length, self._whole)
+        span = 0.5 * math.sqrt(self._whole[2] * self._whole[3])
+        self._recogniser = Recogniser(seeker, self._company, self._length, span)
+        self._reader.heading_offset = settings.heading_offset
+        if self._memory is not None:
+            self._memory = replace(self._memory, looks=None)
+
     def reset(self) -> None:
-        """Forgets the robot, and with it which end is A."""
-        self._seen_at: float | None = None
-        self._heading = self._settings.heading_hint
-        self._misses = 0
+        """Forgets the robot, and with it which end is A and who else is there."""
+        self._ends = EndsMemory(self._settings.heading_hint)
+        self._forget()
+
+    def follow(self, u: float, v: float) -> None:
+        """The robot is where the operator says, px; blobs elsewhere are others, whatever was expected so far."""
+        self._forget()
+        self._told, self._is_told = (u, v), True
 
     def mask(self, image: Image) -> Image:
         """255 where the picture has the robot's colour, for people to look at."""
-        return self._settings.colour.mask(image)
+        return self._settings.colours.mask(image)
 
     def update(self, frame: Frame, expected: Expectation | None) -> Observation:
-        """What this frame tells: a measurement, or for how long there has been none.
+        """What this frame tells: a measurement, or why there is none and for how long.
 
         A frame of another size than the calibration's is not looked at.
         """
-        search = self._search(expected)
-        blob = None
-        if frame.image.shape == (self._whole[3], self._whole[2], 3):
-            blob = self._look(frame.image, search)
-        if blob is None:
-            self._misses += 1
-            return Observation(self._without(frame.captured_at), None, search.window)
-        measurement = self._measurement(blob, frame.captured_at, self._attitude(expected))
-        self._misses, self._seen_at, self._heading = 0, frame.captured_at, measurement.pose.heading
-        return Observation(Tracking.LOCKED, measurement, search.window)
+        if frame.image.shape != (self._whole[3], self._whole[2], 3):
+            return Observation(self._without(frame.captured_at), None, self._whole, OTHER_SIZE)
+        if self._told is not None:
+            self._point_out(frame, self._told)
+        expected = self._heeded(expected)
+        return self._seek(frame) if expected is None else self._follow(frame, expected)
+
+    def _forget(self) -> None:
+        self._company.clear()
+        self._memory = None
+        self._told: Place | None = None
+        self._is_told = False
+        self._seen_at = -math.inf
+        self._was_seen = False
+        self._steadiness = Steadiness(self._length)
+
+    def _point_out(self, frame: Frame, told: Place) -> None:
+        place = self._recogniser.pointed_out(View(frame.image, frame.captured_at, self._whole), told)
+        self._memory, self._told = Memory(place, frame.captured_at), None
+
+    def _heeded(self, expected: Expectation | None) -> Expectation | None:
+        """None for an expectation in NaN, and for that of a robot which the operator has said to be another one."""
+        if expected is None or not (expected.pose.is_finite and math.isfinite(expected.position_sigma)):
+            return None
+        if self._is_told and self._memory is not None:
+            self._is_told = math.dist(self._place_of(expected), self._memory.place) > 0.5 * self._length
+        return None if self._is_told else expected
+
+    def _place_of(self, expected: Expectation) -> Place:
+        return self._camera.to_pixel(expected.pose.x, expected.pose.y, self._height)
+
+    def _follow(self, frame: Frame, expected: Expectation) -> Observation:
+        """With an expectation: in a window, and in the whole picture only when it is not there."""
+        place = self._place_of(expected)
+        self._ends.heading = expected.pose.heading
+        sigma, hurried = expected.position_sigma * self._scale, self._hurried(place)
+        reach = SIGMAS * sigma + hurried + self._settings.margin * self._scale
+        ahead = self._reader.ahead_of(expected.pose, place)
+        window = self._window(place, reach, ahead, expected.heading_sigma)
+        spread = math.hypot(sigma, hurried, FLOOR * self._length)
+        robot = Robot(Owner(place, spread, self._was_seen), self._looks(frame.captured_at))
+        view = View(frame.image, frame.captured_at, window)
+        found = self._recogniser.look(view, robot)
+        if found.robot is None:
+            found = self._recogniser.search(view, robot)
+        if found.robot is None:
+            return self._missed(view, found, is_anywhere=False)
+        if self._company.unwatched_for(view.at) >= WATCH_EVERY:
+            self._recogniser.watch(view, found)
+        elif found.others:
+            self._company.meet(found.others, view.at, everywhere=False)
+        side = self._ends.side(remembered_side(found.robot, ahead), found.robot.end, is_followed=True)
+        return self._locked(found.robot, view, side, Attitude.expected(expected))
+
+    def _seek(self, frame: Frame) -> Observation:
+        """Without an expectation: in the whole picture, by what is remembered."""
+        view = View(frame.image, frame.captured_at, self._whole)
+        robot = Robot(self._remembered(view.at), self._looks(view.at))
+        found, is_anywhere = self._recogniser.search(view, robot), math.isinf(robot.owner.sigma)
+        if found.robot is None:
+            return self._missed(view, found, is_anywhere=is_anywhere)
+        if not self._steadiness.sees(found.robot.centre) >= (
+            FIRST_SIGHTINGS if is_anywhere else NEXT_SIGHTINGS
+        ):
+            return Observation(self._without(view.at), None, view.window, AGAIN, found.others)
+        self._company.meet(found.others, view.at, everywhere=True)
+        ahead = self._reader.ahead(found.robot.centre, self._ends.heading)
+        side = self._ends.side(remembered_side(found.robot, ahead), found.robot.end, is_followed=False)
+        return self._locked(found.robot, view, side, FLAT)
+
+    def _remembered(self, now: float) -> Owner:
+        if self._memory is None:
+            return Owner((0.0, 0.0), math.inf, in_view=False)
+        sigma = sigma_after(now - self._memory.seen_at, self._length)
+        return Owner(self._memory.place, sigma, self._was_seen)
+
+    def _looks(self, now: float) -> Looks | None:
+        return None if self._memory is None else self._memory.looks_at(now)
+
+    def _hurried(self, place: Place) -> float:
+        """By how much a robot on its way to a place may be off it, px."""
+        if self._memory is None:
+            return 0.0
+        return min(HURRY * math.dist(place, self._memory.place), self._length)
+
+    def _window(self, place: Place, reach: float, ahead: Place, heading_sigma: float) -> Window:
+        """Holds the whole body when its centre is within `reach` px of a place and A lies `ahead` (px) of it."""
+        half_u = half_v = UNKNOWN_HALF * self._length
+        if self._memory is not None and self._memory.looks is not None:
+            outline = self._memory.looks.outline(math.atan2(ahead[1], ahead[0]))
+            half_u, half_v = outline.half_extent(heading_sigma)
+        return window_around(place, (reach + half_u + SPARE, reach + half_v + SPARE), self._whole)
+
+    def _missed(self, view: View, found: Found, *, is_anywhere: bool) -> Observation:
+        self._was_seen = False
+        self._steadiness.broken()
+        reason = reason_for(found, is_anywhere=is_anywhere)
+        return Observation(self._without(view.at), None, view.window, reason, found.doubtful or found.others)
 
     def _without(self, captured_at: float) -> Tracking:
-        age = math.inf if self._seen_at is None else captured_at - self._seen_at
-        return Tracking.PREDICTED if 0.0 <= age <= self._settings.predict_for else Tracking.LOST
+        is_recent = 0.0 <= captured_at - self._seen_at <= self._settings.predict_for
+        return Tracking.PREDICTED if is_recent else Tracking.LOST
 
-    def _search(self, expected: Expectation | None) -> Search:
-        if expected is None or not (expected.pose.is_finite and math.isfinite(expected.position_sigma)):
-            return Search(self._whole, (0.0, 0.0), math.inf)
-        centre = self._camera.to_pixel(expected.pose.x, expected.pose.y, self._height)
-        reach = (WINDOW_SIGMAS * expected.position_sigma + self._settings.margin) * self._scale
-        return Search(self._around(centre, reach), centre, reach)
-
-    def _look(self, image: Image, search: Search) -> Blob | None:
-        if math.isinf(search.reach):
-            return self._anywhere(image, search)
-        blob = self._within(image, search)
-        if blob is None and self._misses >= MISSES_BEFORE_WIDE_SEARCH:
-            # A robot that was pushed turns up next to its place; a far blob waits until nothing is expected.
-            wider = search.reach + self._length * self._scale
-            return self._anywhere(image, Search(self._whole, search.centre, wider))
-        return blob
-
-    def _within(self, image: Image, search: Search) -> Blob | None:
-        """The best blob of the window at full resolution."""
-        candidates = find(image, search.window, self._settings.colour, self._region)
-        for candidate in self._ranked(candidates, search)[:TRIES]:
-            if not _touches(candidate.box, search.window):
-                blob = measure(image, search.window, candidate)
-            elif _touches(candidate.box, self._whole):
-                continue
-            else:
-                blob = self._closely(image, candidate)
-            if blob is not None and blob.elongation >= self._settings.elongation_min:
-                return blob
-        return None
-
-    def _closely(self, image: Image, candidate: Candidate) -> Blob | None:
-        """The blob at a candidate's place that a window cut or a coarse grid saw roughly."""
-        search = Search(self._around(candidate.centre, 0.5 * self._reach), candidate.centre, self._reach)
-        found = find(image, search.window, self._settings.colour, self._region)
-        whole = [each for each in self._ranked(found, search) if not _touches(each.box, search.window)]
-        return measure(image, search.window, whole[0]) if whole else None
-
-    def _anywhere(self, image: Image, search: Search) -> Blob | None:
-        """The best blob of the whole frame: found on a coarse grid, then looked at closely."""
-        coarse = self._region.scaled(1.0, COARSE_AREA_TOLERANCE)
-        found = find(image, self._whole, self._settings.colour, coarse, self._decimation)
-        for candidate in self._ranked(found, search)[:TRIES]:
-            blob = self._closely(image, candidate)
-            if blob is not None and blob.elongation >= self._settings.elongation_min:
-                return blob
-        return None
-
-    def _ranked(self, candidates: Iterable[Candidate], search: Search) -> list[Candidate]:
-        """Those within reach, best first: near the expected place and of the right size."""
-        typical = self._region.middle
-        costs = []
-        for candidate in candidates:
-            (u, v), (centre_u, centre_v) = candidate.centre, search.centre
-            distance = math.hypot(u - centre_u, v - centre_v)
-            if distance <= search.reach:
-                costs.append((distance / search.reach + abs(math.log(candidate.area / typical)), candidate))
-        return [candidate for _, candidate in sorted(costs, key=lambda pair: pair[0])]
-
-    @property
-    def _reach(self) -> float:
-        """Half a body length, px."""
-        return 0.5 * self._length * self._scale
-
-    def _around(self, centre: tuple[float, float], reach: float) -> Window:
-        """The window that holds the whole body when its centre is within `reach` px of a place, px."""
-        half = min(reach + 0.6 * self._length * self._scale + 2.0, float(max(self._whole)))
-        width, height = self._whole[2:]
-        u, v = (
-            min(max(place, -half), limit + half) for place, limit in zip(centre, (width, height), strict=True)
-        )
-        left, right = max(math.floor(u - half), 0), min(math.ceil(u + half), width)
-        top, bottom = max(math.floor(v - half), 0), min(math.ceil(v + half), height)
-        return min(left, width - 1), min(top, height - 1), max(right, left + 1, 1), max(bottom, top + 1, 1)
-
-    def _coarsest(self) -> int:
-        width = self._region.middle / (self._length * self._scale)
-        return next((step for step in (8, 4, 2) if width / step >= COARSE_WIDTH), 1)
-
-    def _attitude(self, expected: Expectation | None) -> Attitude:
-        if expected is None or not expected.pose.is_finite:
-            return Attitude(self._heading, PIVOT_A, 0.0)
-        tilt = expected.tilt if 0.0 <= expected.tilt <= LARGEST_TILT else 0.0
-        return Attitude(expected.pose.heading, expected.pivot, tilt)
-
-    def _measurement(self, blob: Blob, captured_at: float, attitude: Attitude) -> Measurement:
-        """The pose of the flat robot.
-
-        The pressed end stays when it tilts; the other end rises and comes nearer to the camera. So the two
-        halves of the long axis are mapped at the height of their own end, and the flat robot's centre lies
-        L/2 (1 - cos(tilt)) further from the pressed end than the blob's does.
-        """
-        (u, v), half, side = blob.centre, self._reach, self._side(blob, attitude.heading)
-        lift = self._length * math.sin(attitude.tilt)
-        height_a, height_b = (0.0, lift) if attitude.pivot == PIVOT_A else (lift, 0.0)
-        du, dv = side * half * math.cos(blob.axis), side * half * math.sin(blob.axis)
-        x, y = self._camera.to_point(u, v, self._height + 0.5 * lift)
-        ax, ay = self._camera.to_point(u + du, v + dv, self._height + height_a)
-        bx, by = self._camera.to_point(u - du, v - dv, self._height + height_b)
-        heading = wrap(math.atan2(ay - by, ax - bx) - 0.5 * math.pi)
-        shift = -0.5 * attitude.pivot * self._length * (1.0 - math.cos(attitude.tilt))
-        pose = Pose(x - shift * math.sin(heading), y + shift * math.cos(heading), heading)
-        return Measurement(pose, captured_at, blob.centre, blob.corners, blob.area)
-
-    def _side(self, blob: Blob, heading: float) -> int:
-        """+1 when the blob's axis points from B to A for the expected heading, -1 when the other way."""
-        (u, v), half = blob.centre, self._reach
-        du, dv = half * math.cos(blob.axis), half * math.sin(blob.axis)
-        x, y = self._camera.to_point(u, v, self._height)
-        ahead_x, ahead_y = self._camera.to_point(u + du, v + dv, self._height)
-        return 1 if (ahead_y - y) * math.cos(heading) - (ahead_x - x) * math.sin(heading) >= 0.0 else -1
-
-
-def _touches(box: Window, window: Window) -> bool:
-    """Whether a box reaches the window's edge, so that the window may have cut the blob."""
-    return box[0] <= window[0] or box[1] <= window[1] or box[2] >= window[2] or box[3] >= window[3]
+    def _locked(self, blob: Blob, view: View, side: int, attitude: Attitude) -> Observation:
+        measurement = self._reader.measurement(blob, side, view.at, attitude)
+        self._ends.heading = measurement.pose.heading
+        known, seen = self._looks(view.at), Looks.of(blob)
+        self._memory = Memory(blob.centre, view.at, seen if known is None else known.learnt(seen))
+        self._seen_at, self._was_seen = view.at, True
+        rivals = self._company.places(view.at, ELSEWHERE_AFTER)
+        return Observation(Tracking.LOCKED, measurement, view.window, "", rivals)

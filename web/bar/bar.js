@@ -48,14 +48,20 @@ function Vitals({ tick }) {
   const link = tick?.link;
   return html`
     <dl class="vitals">
-      <div title="Frames a second that went through the loop; ${loop?.dropped_frames ?? 0} dropped so far">
-        <dt>Camera</dt><dd>${quantity(loop?.rate_Hz, "fps", 0)}</dd></div>
+      <div title="Frames a second that went through the loop; ${loop?.dropped_frames ?? 0} dropped so far. A picture arrives this late after it was taken">
+        <dt>Camera</dt><dd>${quantity(loop?.rate_Hz, "fps", 0)}${lateness(tick)}</dd></div>
       <div title="From frame in to bytes out: median, and 99th percentile">
         <dt>Loop</dt><dd>${quantity(loop?.latency_p50_ms, "ms")} <span class="soft">p99 ${quantity(loop?.latency_p99_ms, "ms")}</span></dd></div>
       <div title="${coilDetail(tick)}"><dt>Coils</dt><dd>${percent(hottest(tick))}${tick?.limited_by && html` <span class="soft">limited</span>`}</dd></div>
       <div title="${linkDetail(link)}"><dt>Link</dt><dd>${link?.state ?? "–"} <span class="soft">${roundTrip(link)}</span></dd></div>
     </dl>
   `;
+}
+
+/** How late pictures come, as far as it is known. */
+function lateness(tick) {
+  const late = tick?.camera?.latency_ms;
+  return typeof late === "number" ? html` <span class="soft">${quantity(late, "ms late", 0)}</span>` : null;
 }
 
 const hottest = (tick) => (tick?.coil_heat ? Math.max(...tick.coil_heat) : null);

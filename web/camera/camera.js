@@ -1,19 +1,25 @@
 /** The camera card: the picture with its overlay, and what is known of the robot in words and numbers. */
+import { openSetup } from "../calibration/setup.js";
+import { BOARD_STEPS } from "../calibration/standing.js";
+import { followAt } from "../live/actions.js";
 import { useStore } from "../store.js";
 import { fixed, quantity, wrapDegrees } from "../units.js";
 import { html, useEffect, useRef, useState } from "../view.js";
 import { createPainter } from "./painter.js";
-import { frameAge, STALE_S, trackingWords } from "./tracking.js";
+import { PointedCanvas, usePointer, useTaker } from "./pointing.js";
+import { frameAge, mayBeTold, STALE_S, trackingReason, trackingWords } from "./tracking.js";
 
 const VIEWS = [["raw", "Picture"], ["mask", "Mask"]];
 
 export function Camera() {
   const [view, setView] = useState("raw");
   const [overlay, setOverlay] = useState(true);
+  const settingUp = useStore((state) => state.setup !== null);
   return html`
     <section class="card camera" aria-labelledby="camera-title">
       <header class="card-head">
         <h2 id="camera-title">Camera</h2>
+        <button class="quiet" id="set-up-camera" type="button" aria-expanded=${settingUp} disabled=${settingUp} onClick=${openSetup}>Set up camera</button>
         <fieldset class="segments">
           <legend class="unseen">Picture shown</legend>
           ${VIEWS.map(([name, title]) => html`
@@ -28,6 +34,8 @@ export function Camera() {
   `;
 }
 
+const LABEL = "Camera picture of the plate with the robot, its path and its target";
+
 function Picture({ view, overlay }) {
   const canvas = useRef(null);
   const painter = useRef(null);
@@ -38,9 +46,24 @@ function Picture({ view, overlay }) {
   useEffect(() => painter.current.show({ view, overlay }), [view, overlay]);
   return html`
     <div class="picture">
-      <canvas ref=${canvas} role="img" aria-label="Camera picture of the plate with the robot, its path and its target"></canvas>
-      <${Age} age=${() => painter.current?.age_s() ?? null} />
+      <${PointedCanvas} canvas=${canvas} painter=${() => painter.current} label=${LABEL} />
+      <${Notes} age=${() => painter.current?.age_s() ?? null} />
     </div>
+  `;
+}
+
+/** Over the picture: how old it is and what a click would do; at its foot why the robot is not seen. */
+function Notes({ age }) {
+  const reason = useStore(({ tick, setup }) => (BOARD_STEPS.includes(setup?.step) ? "" : trackingReason(tick)));
+  const ask = useStore((state) => mayBeTold(state.tick));
+  usePointer(ask ? { words: "Click the robot: the one to follow", press: ({ u, v }) => followAt(u, v) } : null, { behind: true });
+  const taker = useTaker();
+  return html`
+    <div class="picture-notes top" aria-live="polite">
+      <${Age} age=${age} />
+      ${taker?.words && html`<p class="picture-note asking">${taker.words}</p>`}
+    </div>
+    <div class="picture-notes foot" aria-live="polite">${reason && html`<p class="picture-note">${reason}</p>`}</div>
   `;
 }
 
@@ -64,7 +87,7 @@ function Readings() {
   const active = tick?.command?.field_mT > 0 ? (tick.command.pivot === 1 ? "A" : "B") : "none";
   return html`
     <dl class="readings">
-      <div class="tracking" data-tracking=${tick?.tracking}><dt>Tracking</dt><dd>${trackingWords(tick)}</dd></div>
+      <div class="tracking" data-tracking=${tick?.tracking} title=${trackingReason(tick)}><dt>Tracking</dt><dd>${trackingWords(tick)}</dd></div>
       <div><dt>x</dt><dd>${quantity(pose?.x_mm, "mm")}</dd></div>
       <div><dt>y</dt><dd>${quantity(pose?.y_mm, "mm")}</dd></div>
       <div><dt>Heading</dt><dd>${quantity(pose ? wrapDegrees(pose.heading_deg) : null, "deg")}</dd></div>

@@ -6,10 +6,13 @@ import { pivotPoint } from "./projection.js";
 
 const COLOURS = {
   A: "#56b4e9", B: "#e69f00", path: "#0072b2", target: "#f0e442", trail: "#ffffff", axis: "#ffffff", seam: "#10151b",
+  rival: "#cc79a7",
 };
 const DEFAULT_LENGTH_MM = 10;
 /** Length of the arrow that shows the heading, mm. */
 const ARROW_MM = 8;
+/** CSS px; around a robot, clear of its ends. */
+const RIVAL_RADIUS = 22;
 
 /**
  * @param context 2D context whose unit is one camera pixel; `pixel` is one CSS pixel in that unit
@@ -22,6 +25,7 @@ export function drawOverlay(context, pixel, scene) {
   drawTrail(pen);
   if (!pen.tick) return;
   drawWindow(pen);
+  drawRivals(pen);
   drawTarget(pen);
   drawRobot(pen);
 }
@@ -50,6 +54,16 @@ function drawWindow({ context, pixel, tick, size }) {
   context.setLineDash([3 * pixel, 3 * pixel]);
   seamed({ context, pixel }, COLOURS.axis, 1);
   context.setLineDash([]);
+}
+
+/** What else looks like the robot: a ring, with a question mark while nobody knows which one it is. */
+function drawRivals({ context, pixel, tick }) {
+  for (const [u, v] of tick.rivals_px ?? []) {
+    context.beginPath();
+    context.arc(u, v, RIVAL_RADIUS * pixel, 0, 2 * Math.PI);
+    seamed({ context, pixel }, COLOURS.rival, 2);
+    if (tick.tracking !== "locked") letter({ context, pixel }, "?", [u + RIVAL_RADIUS * pixel, v - RIVAL_RADIUS * pixel], COLOURS.rival);
+  }
 }
 
 function drawTarget({ context, pixel, tick, project }) {
@@ -115,14 +129,14 @@ function drawEnd({ context, pixel }, { name, end: [u, v], centre, active }) {
   letter({ context, pixel }, name, [u + (u - centre[0]) * reach * pixel, v + (v - centre[1]) * reach * pixel]);
 }
 
-function letter({ context, pixel }, text, [u, v]) {
+function letter({ context, pixel }, text, [u, v], colour = COLOURS[text]) {
   context.textAlign = "center";
   context.textBaseline = "middle";
   context.font = `600 ${12 * pixel}px system-ui, sans-serif`;
   context.lineWidth = 3 * pixel;
   context.strokeStyle = COLOURS.seam;
   context.strokeText(text, u, v);
-  context.fillStyle = COLOURS[text];
+  context.fillStyle = colour;
   context.fillText(text, u, v);
 }
 

@@ -3,6 +3,7 @@ import { get } from "../store.js";
 import { live, onTick } from "../live/ticks.js";
 import { keepOpen } from "../live/socket.js";
 import { drawOverlay } from "./overlay.js";
+import { ALONE, drawnLayers, onPointingChange } from "./pointing.js";
 import { projection } from "./projection.js";
 
 /** Pictures are asked for at most this often: more cannot be told apart and costs the rig's computer, ms. */
@@ -12,7 +13,8 @@ const ALONE_S = 0.1;
 
 /**
  * @param {HTMLCanvasElement} canvas
- * @returns painter with `show({view, overlay})`, `age_s()` of the newest picture, and `close()`
+ * @returns painter with `show({view, overlay})`, `age_s()` of the newest picture, where in the picture an event is
+ *          (`place(event)`), the picture's `size` and its `pixel` (a CSS pixel in camera pixels), and `close()`
  */
 export function createPainter(canvas) {
   const context = canvas.getContext("2d");
@@ -29,7 +31,7 @@ export function createPainter(canvas) {
   function paint() {
     requested = 0;
     fit(canvas);
-    const size = get().camera?.size ?? (painter.picture ? [painter.picture.width, painter.picture.height] : null);
+    const size = sizeOf(painter);
     if (size) paintScaled(context, painter, size);
     askForNext?.();
     askForNext = null;
@@ -64,13 +66,47 @@ export function createPainter(canvas) {
   const resized = new ResizeObserver(invalidate);
   resized.observe(canvas);
   const forgetTicks = onTick(() => (pictureAge(painter) ?? 1) > ALONE_S && invalidate());
+  const forgetPointing = onPointingChange(invalidate);
   const close = () => {
     cancelAnimationFrame(requested);
     resized.disconnect();
     forgetTicks();
+    forgetPointing();
     frames?.close();
   };
-  return { show, close, age_s: () => pictureAge(painter) };
+  return {
+    show, close,
+    age_s: () => pictureAge(painter),
+    place: (event, { clamped = false } = {}) => placeOf(event, canvas, sizeOf(painter), clamped),
+    get size() {
+      return sizeOf(painter) ?? [canvas.clientWidth, canvas.clientHeight];
+    },
+    get pixel() {
+      return 1 / fitted(canvas.clientWidth, canvas.clientHeight, this.size).scale;
+    },
+  };
+}
+
+function sizeOf({ picture }) {
+  return get().camera?.size ?? (picture ? [picture.width, picture.height] : null);
+}
+
+/** How a picture of a size lies within a box: as large as it goes, in the middle. */
+function fitted(width, height, size) {
+  const scale = Math.min(width / size[0], height / size[1]);
+  return { scale, left: (width - scale * size[0]) / 2, top: (height - scale * size[1]) / 2 };
+}
+
+/** Where in the picture somebody points, in camera pixels; null beside it, unless it is to be clamped. */
+function placeOf(event, canvas, size, clamped) {
+  if (!size) return null;
+  const box = canvas.getBoundingClientRect();
+  const { scale, left, top } = fitted(box.width, box.height, size);
+  const u = (event.clientX - box.left - left) / scale;
+  const v = (event.clientY - box.top - top) / scale;
+  const within = (value, most) => Math.min(Math.max(value, 0), most - 1);
+  const inside = u >= 0 && v >= 0 && u < size[0] && v < size[1];
+  return inside || clamped ? { u: within(u, size[0]), v: within(v, size[1]), pixel: 1 / scale } : null;
 }
 
 function pictureAge({ receivedAt }) {
@@ -86,28 +122,37 @@ function fit(canvas) {
 
 function paintScaled(context, painter, [width, height]) {
   const { canvas } = context;
-  const scale = Math.min(canvas.width / width, canvas.height / height);
+  const { scale, left, top } = fitted(canvas.width, canvas.height, [width, height]);
+  const pixel = (devicePixelRatio || 1) / scale;
   context.setTransform(1, 0, 0, 1, 0, 0);
   context.clearRect(0, 0, canvas.width, canvas.height);
-  context.setTransform(scale, 0, 0, scale, (canvas.width - scale * width) / 2, (canvas.height - scale * height) / 2);
+  context.setTransform(scale, 0, 0, scale, left, top);
   if (painter.picture) context.drawImage(painter.picture, 0, 0, width, height);
-  if (painter.overlay) paintOverlay(context, painter, (devicePixelRatio || 1) / scale);
+  followModel(painter);
+  const pen = { context, pixel, picture: painter.picture, size: [width, height], project: painter.project };
+  const alone = [...drawnLayers()].map((draw) => draw(pen)).includes(ALONE);
+  if (painter.overlay && !alone) paintOverlay(context, painter, pixel);
+}
+
+function followModel(painter) {
+  const model = get().camera?.model;
+  if (!model || painter.model === model) return;
+  painter.model = model;
+  painter.project = projection(model);
 }
 
 function paintOverlay(context, painter, pixel) {
-  const { camera, path, runPath, rig } = get();
+  const { camera, path, runPath, rig, setup } = get();
   if (!camera?.model) return;
-  if (painter.model !== camera.model) {
-    painter.model = camera.model;
-    painter.project = projection(camera.model);
-  }
+  // While the camera is set up the picture shows what the camera sees, not what a run would do.
+  const way = setup === null ? (runPath ?? path)?.points_mm : null;
   drawOverlay(context, pixel, {
     project: painter.project,
     bodyHeight_mm: camera.model.body_height_mm ?? 0,
     length_mm: rig?.robot?.length_mm,
-    path: (runPath ?? path)?.points_mm,
+    path: way,
     tick: live.tick,
-    trail: live.trail,
+    trail: setup === null ? live.trail : [],
     size: camera.size,
   });
 }

@@ -11,6 +11,12 @@ export function trackingWords(tick) {
   return typeof tick.tracking_age_s === "number" ? `lost for ${fixed(tick.tracking_age_s, 1)} s` : "lost";
 }
 
+/** Why the robot is not seen, or what stands beside it, in the rig's words; "" when there is nothing to say. */
+export const trackingReason = (tick) => tick?.tracking_reason ?? "";
+
+/** Several things look like the robot, and the rig does not drive: somebody may say which one it is. */
+export const mayBeTold = (tick) => (tick?.rivals_px?.length ?? 0) > 0 && tick.tracking !== "locked" && ["disarmed", "held"].includes(tick.rig);
+
 /** Age of what is on the screen: of the picture here, or of the frame that the rig last saw. */
 export function frameAge(pictureAge, tick) {
   if (pictureAge === null) return null;

@@ -8,9 +8,10 @@ const KEYS = [
   ["?", "this sheet"],
   ["Tab, Shift + Tab", "next, previous control"],
   ["Enter", "press the focused button, take over the focused value"],
+  ["Arrows", "move the crosshair in the camera picture while it waits for a click (Shift: far; Enter: click)"],
 ];
 
-const TEXT_INPUTS = "textarea, [contenteditable=true], input:not([type=checkbox]):not([type=radio]):not([type=button])";
+const TEXT_INPUTS = "textarea, [contenteditable=true], input:not([type=checkbox]):not([type=radio]):not([type=button]):not([type=range])";
 const isTyping = (event) => event.target instanceof event.view.Element && event.target.matches(TEXT_INPUTS);
 const isStop = (event) => event.key === "Escape" || (event.key === " " && !isTyping(event));
 

@@ -69,6 +69,9 @@ export const pauseRun = () => act("pause", () => post("/runs/current/pause"));
 export const resumeRun = () => act("resume", () => post("/runs/current/resume"));
 export const stopRun = () => act("stop run", () => post("/runs/current/stop"));
 
+/** Tells the rig which of the things that look alike is the robot, by its place in the picture, px. */
+export const followAt = (u, v) => act("follow", () => post("/vision/follow", { u, v }));
+
 export const reloadRigFile = () => act("reload rig file", () => post("/rig/reload"));
 
 export const startRun = () =>

@@ -40,3 +40,4 @@ export const read = (path) => request(path, { cache: "no-store" });
 export const post = sending("POST");
 export const put = sending("PUT");
 export const patch = sending("PATCH");
+export const remove = (path) => request(path, { method: "DELETE" });

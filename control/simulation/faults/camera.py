@@ -8,6 +8,8 @@ from control.simulation.faults.points import FaultPoints
 
 MM = 1e-3
 MS = 1e-3
+NIGHT = 0.03
+"""What is left of the light when the lamp is out, as a share."""
 
 
 class Late(Parameters):
@@ -16,6 +18,18 @@ class Late(Parameters):
 
 class Lost(Parameters):
     share: float = share(0.3, "Share of the pictures that are lost")
+
+
+class Exposure(Parameters):
+    factor: float = quantity(2.0, "1", 0.05, 10.0, "How bright the picture becomes, relative to before")
+
+
+class Flicker(Parameters):
+    depth: float = share(0.5, "How much darker the light is at its darkest")
+
+
+class Twin(Parameters):
+    distance_mm: float = quantity(25.0, "mm", 5.0, 100.0, "From the robot")
 
 
 class Jump(Parameters):
@@ -53,6 +67,34 @@ def _late(points: FaultPoints, extra: float) -> None:
 
 def _lost(points: FaultPoints, share_lost: float) -> None:
     points.camera.disturbance.lost = share_lost
+
+
+def _light(points: FaultPoints, light: float) -> None:
+    points.camera.disturbance.light = light
+
+
+def _exposure(points: FaultPoints, factor: float) -> None:
+    points.camera.disturbance.exposure = factor
+
+
+def _flicker(points: FaultPoints, depth: float) -> None:
+    points.camera.disturbance.flicker = depth
+
+
+def _glare(points: FaultPoints, on: bool) -> None:
+    points.camera.disturbance.glare = on
+
+
+def _twin(points: FaultPoints, distance: float) -> None:
+    points.camera.disturbance.twin = distance
+
+
+def _hand(points: FaultPoints, on: bool) -> None:
+    points.camera.disturbance.hand = on
+
+
+def _litter(points: FaultPoints, on: bool) -> None:
+    points.camera.disturbance.litter = on
 
 
 def _jump(points: FaultPoints, offset: tuple[float, float]) -> None:
@@ -111,6 +153,48 @@ KINDS = (
         "Something covers the robot, or it has been taken away.",
         "when the camera sees the robot again",
         lambda points, _: _hidden(points, True), lambda points: _hidden(points, False),
+    ),
+    FaultKind(
+        "light_off", 5, Family.CAMERA, "Light off",
+        "The lamp over the plate goes out: the picture is nearly black.",
+        "when the light is on again",
+        lambda points, _: _light(points, NIGHT), lambda points: _light(points, 1.0),
+    ),
+    FaultKind(
+        "exposure_jump", 5, Family.CAMERA, "Exposure jumps",
+        "From one picture to the next everything is brighter or darker, as when an automatic exposure acts.",
+        WHEN_TAKEN_AWAY,
+        lambda points, jump: _exposure(points, jump.factor), lambda points: _exposure(points, 1.0), Exposure,
+    ),
+    FaultKind(
+        "flicker", 5, Family.CAMERA, "Light flickers",
+        "A lamp flickers with the mains: dark bands wander through the picture.",
+        WHEN_TAKEN_AWAY,
+        lambda points, flicker: _flicker(points, flicker.depth), lambda points: _flicker(points, 0.0), Flicker,
+    ),
+    FaultKind(
+        "glare", 5, Family.CAMERA, "Glare on the robot",
+        "A lamp is mirrored in the robot: a part of it is white.",
+        WHEN_TAKEN_AWAY,
+        lambda points, _: _glare(points, True), lambda points: _glare(points, False),
+    ),
+    FaultKind(
+        "hand", 6, Family.CAMERA, "Hand in the picture",
+        "A hand reaches into the picture and stays over the robot.",
+        "when the camera sees the robot again",
+        lambda points, _: _hand(points, True), lambda points: _hand(points, False),
+    ),
+    FaultKind(
+        "second_robot", 7, Family.CAMERA, "Second robot",
+        "Another robot just like it lies on the plate.",
+        "when the other one is gone",
+        lambda points, twin: _twin(points, twin.distance_mm * MM), lambda points: _twin(points, 0.0), Twin,
+    ),
+    FaultKind(
+        "debris", 7, Family.CAMERA, "Bits on the plate",
+        "Specks, fibres and flakes lie about; some have the robot's colour.",
+        WHEN_TAKEN_AWAY,
+        lambda points, _: _litter(points, True), lambda points: _litter(points, False),
     ),
     FaultKind(
         "sighting_jumps", 8, Family.CAMERA, "Sighting jumps",

@@ -29,6 +29,13 @@ class CameraSwitches(Protocol):
     mirrored: bool
     cropped: bool
     timeless: bool
+    light: float
+    exposure: float
+    flicker: float
+    glare: bool
+    twin: float
+    hand: bool
+    litter: bool
 
 
 class Pictures(Protocol):

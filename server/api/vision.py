@@ -1,0 +1,196 @@
+"""What the robot looks like: colours by a click on it, one profile for each light, and which blob is meant."""
+
+from __future__ import annotations
+
+import asyncio
+import base64
+from collections.abc import Mapping
+from typing import Annotated, Any
+
+from fastapi import APIRouter
+from pydantic import Field
+
+from control.safety import Refused
+from server.api.access import TheChanges, TheRig
+from server.api.body import StrictRoute
+from server.api.problems import Problem, Rejected, invalid_field, not_found
+from server.api.rig_file import served, told
+from server.api.schemas import MM, Edge
+from server.rig import Rig
+from server.rig_changes import RigChanges
+from server.vision_section import DEFAULT_PROFILE, ColourSection, ProfileName, VisionSection
+from server.vision_settings import colour_section
+from vision.encoding import encode_mask
+from vision.tracking.picking import Part, PickError, Proposal, Sight, pick
+
+router = APIRouter(prefix="/vision", tags=["vision"], route_class=StrictRoute)
+
+MM2 = 1e-6
+Pixel = Annotated[float, Field(ge=-0.5, le=8192.0)]
+Hues = Annotated[list[Annotated[float, Field(ge=0.0, le=360.0)]], Field(min_length=2, max_length=2)]
+Levels = Annotated[list[Annotated[int, Field(ge=0, le=255)]], Field(min_length=2, max_length=2)]
+Areas = Annotated[
+    list[Annotated[float, Field(gt=0.0, le=10_000.0)]],
+    Field(min_length=2, max_length=2, json_schema_extra={"unit": "mm²"}),
+]
+
+
+class ColourBody(Edge):
+    """Thresholds; a low hue above the high one means the way through red."""
+
+    hue_deg: Hues
+    saturation: Levels
+    value: Levels
+
+
+class VisionChange(Edge):
+    """What is left out stays as it is. The colours are those of the profile in use, or of the one switched to."""
+
+    profile: ProfileName | None = None
+    colour: ColourBody | None = None
+    end_mark: ColourBody | None = Field(default=None, description="null: the robot bears no mark.")
+    area_mm2: Areas | None = None
+    heading_hint_deg: Annotated[float, Field(ge=-360.0, le=360.0)] | None = None
+
+
+class PlaceBody(Edge):
+    """A place in the picture, px."""
+
+    u: Pixel
+    v: Pixel
+
+
+class PickBody(PlaceBody):
+    part: Part = "body"
+
+
+class ProfileBody(Edge):
+    name: ProfileName
+
+
+@router.get("")
+async def looks(rig: TheRig) -> dict[str, Any]:
+    """What the robot is looked for by, and whether it is seen."""
+    return vision_json(rig)
+
+
+@router.patch("")
+async def alter(body: VisionChange, rig: TheRig, changes: TheChanges) -> dict[str, Any]:
+    """Use other colours, sizes or another profile from the next frame on, and save them; on a disarmed rig."""
+    await save(changes, changed(body, rig.settings.vision))
+    return vision_json(rig)
+
+
+@router.post("/pick")
+async def pick_colour(body: PickBody, rig: TheRig) -> dict[str, Any]:
+    """What was clicked on in the newest picture, as thresholds that would find it; changes nothing."""
+    sight = sight_of(rig)
+    try:
+        proposal = await asyncio.to_thread(pick, sight, (body.u, body.v), body.part)
+    except PickError as error:
+        raise Rejected(invalid_field(("u",), str(error))) from error
+    return proposal_json(proposal)
+
+
+@router.post("/profiles", status_code=201)
+async def save_profile(body: ProfileBody, rig: TheRig, changes: TheChanges) -> dict[str, Any]:
+    """Save the colours in use under a name, and use them by it from now on."""
+    vision = rig.settings.vision
+    if body.name == DEFAULT_PROFILE or body.name in vision.profiles:
+        raise Refused(f'there is a profile "{body.name}" already; choose another name, or delete it first')
+    colours = vision.in_use.model_dump(mode="json", include={*ColourSection.model_fields, "end_mark"})
+    await save(changes, {"profile": body.name, "profiles": {body.name: colours}})
+    return vision_json(rig)
+
+
+@router.delete("/profiles/{name}")
+async def delete_profile(name: str, rig: TheRig, changes: TheChanges) -> dict[str, Any]:
+    """Forget a profile that is not in use."""
+    vision = rig.settings.vision
+    if name == DEFAULT_PROFILE:
+        raise Refused(f'"{DEFAULT_PROFILE}" stands for the colours of the rig file\'s [vision] and stays')
+    if name not in vision.profiles:
+        there = ", ".join([DEFAULT_PROFILE, *vision.profiles])
+        raise not_found(f'There is no profile "{name}"; there are: {there}.')
+    if name == vision.profile:
+        raise Refused(f'the profile "{name}" is in use; switch to another one first')
+    await save(changes, {"profiles": {name: None}})
+    return vision_json(rig)
+
+
+@router.post("/follow")
+async def follow(body: PlaceBody, rig: TheRig) -> dict[str, Any]:
+    """The robot is there in the picture; blobs elsewhere are others. While the rig is disarmed or held."""
+    width, height = rig.machine.camera_model.size
+    if not (body.u <= width - 0.5 and body.v <= height - 0.5):
+        words = f"({body.u:g}, {body.v:g}) px is outside the picture, which is {width}x{height} px"
+        raise Rejected(invalid_field(("u",), words))
+    await rig.follow(body.u, body.v)
+    return vision_json(rig)
+
+
+async def save(changes: RigChanges | None, vision: Mapping[str, Any]) -> None:
+    with told():
+        await served(changes).patch({"vision": vision})
+
+
+def changed(body: VisionChange, vision: VisionSection) -> dict[str, Any]:
+    """The rig file's [vision] as the body wants it: only what differs."""
+    values = body.model_dump(mode="json", exclude_unset=True)
+    colours = values.pop("colour", None) or {}
+    if "end_mark" in values:
+        colours["end_mark"] = values.pop("end_mark")
+    result = {name: value for name, value in values.items() if value is not None}
+    profile = result.get("profile", vision.profile)
+    if profile == DEFAULT_PROFILE:
+        return {**result, **colours}
+    if profile not in vision.profiles:
+        there = ", ".join([DEFAULT_PROFILE, *vision.profiles])
+        raise Rejected(invalid_field(("profile",), f'there is no profile "{profile}"; there are: {there}'))
+    return {**result, "profiles": {profile: colours}} if colours else result
+
+
+def sight_of(rig: Rig) -> Sight:
+    """The newest picture with what is needed to measure in it; a picture of another size is not measured in."""
+    frame, machine = rig.frame, rig.machine
+    width, height = machine.camera_model.size
+    if frame is None:
+        raise Rejected(Problem(503, "No picture", "The camera has not delivered a frame."))
+    if frame.image.shape != (height, width, 3):
+        words = f"The camera's picture is not {width}x{height} px in colour, as its calibration is."
+        raise Rejected(Problem(409, "Other size", words))
+    length = rig.settings.robot.body_length_mm * MM
+    return Sight(frame.image, machine.camera_model, machine.body_height, length)
+
+
+def vision_json(rig: Rig) -> dict[str, Any]:
+    vision, snapshot = rig.settings.vision, rig.snapshot
+    in_use, observation = vision.in_use, snapshot.observation
+    return {
+        "profile": vision.profile,
+        "profiles": [DEFAULT_PROFILE, *sorted(vision.profiles)],
+        "colour": colour_json(in_use),
+        "end_mark": None if in_use.end_mark is None else colour_json(in_use.end_mark),
+        "area_mm2": list(vision.area_mm2),
+        "heading_hint_deg": vision.heading_hint_deg,
+        "latency_ms": rig.settings.camera.latency_ms,
+        "tracking": snapshot.tracking,
+        "reason": "" if observation is None else observation.reason,
+    }
+
+
+def colour_json(section: ColourSection) -> dict[str, Any]:
+    return section.model_dump(mode="json", include={"hue_deg", "saturation", "value"})
+
+
+def proposal_json(proposal: Proposal) -> dict[str, Any]:
+    area = proposal.region.area_min, proposal.region.area_max
+    return {
+        "colour": colour_json(colour_section(proposal.colour)),
+        "area_mm2": [round(end / MM2, 2) for end in area],
+        "separation": round(proposal.separation, 3),
+        "light_change": proposal.light_change,
+        "warnings": list(proposal.warnings),
+        "box_px": list(proposal.box),
+        "mask_png": "data:image/png;base64," + base64.b64encode(encode_mask(proposal.mask)).decode("ascii"),
+    }

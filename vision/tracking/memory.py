@@ -1,0 +1,181 @@
+"""What is remembered of the robot and of the other blobs, and how that grows vague while they are not seen.
+
+A robot without current cannot move by itself; the rig takes the current away 150 ms after it was last seen. Until
+then it walks at up to its own length per second, and a hand that covers it may push it as fast. So a remembered place
+holds for ELSEWHERE_AFTER with a standard deviation that grows with time; after that somebody may have carried the
+robot anywhere. What never grows old: its heading (a robot at rest does not turn round), and who else is there.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from vision.tracking.detection import Blob
+from vision.tracking.identity import MOST, Owner
+from vision.tracking.windows import Outline, Place
+
+STILL = 0.12
+"""Standard deviation of a place that was seen just now, body lengths: a coarse search sees it to a grid point."""
+WANDER = 0.25
+"""It grows by so many body lengths per second; the gate is 3.7 of it, so nearly a length per second is covered
+(half a length at 100 deg/s, the fastest swing, is 0.87 of it)."""
+ELSEWHERE_AFTER = 1.5
+"""A robot that was not seen for so long may be anywhere, s: half as long again as a hand covers it in passing."""
+
+LOOKS_GATE = 18.5
+"""99.9 % point of chi-squared with four degrees of freedom: length, width, area and colour."""
+LENGTH_SPREAD = 0.02
+"""Standard deviation of the logarithm of the length in the picture, by light, blur and tilt (from the scenes)."""
+WIDTH_SPREAD = 0.04
+"""The same of the width: a third of the length, so as many px are more of it."""
+AREA_SPREAD = 0.05
+"""The same of the area within the thresholds, which light and shadow change most."""
+COLOUR_SPREAD = 0.04
+"""Standard deviation of the shares of blue, green and red, by the colour of the light."""
+LEARNING = 0.05
+"""Share of a new sighting in the remembered looks: a third of a second at 60 Hz."""
+STEADY = 0.15
+"""Two sightings agree when they are not further apart than that, body lengths."""
+
+
+def sigma_after(gap: float, length: float) -> float:
+    """Standard deviation of a place `gap` seconds after it was seen, in the body length's unit; inf: anywhere."""
+    return length * (STILL + WANDER * gap) if 0.0 <= gap <= ELSEWHERE_AFTER else math.inf
+
+
+@dataclass(frozen=True, slots=True)
+class Looks:
+    """What a blob looks like: length, width (px), area (px^2), shares of blue, green and red (sum 1)."""
+
+    length: float
+    width: float
+    area: float
+    shares: tuple[float, float, float]
+
+    @classmethod
+    def of(cls, blob: Blob) -> Looks:
+        blue, green, red = blob.mean_colour
+        light = max(blue + green + red, 1.0)
+        first, second, third, _ = blob.corners
+        return cls(
+            length=max(math.dist(second, third), 1.0),
+            width=max(math.dist(first, second), 1.0),
+            area=blob.area,
+            shares=(blue / light, green / light, red / light),
+        )
+
+    def unlike(self, other: Looks) -> float:
+        """How many standard deviations lie between the two, squared."""
+        return (
+            (math.log(self.length / other.length) / LENGTH_SPREAD) ** 2
+            + (math.log(self.width / other.width) / WIDTH_SPREAD) ** 2
+            + (math.log(self.area / other.area) / AREA_SPREAD) ** 2
+            + sum((one - two) ** 2 for one, two in zip(self.shares, other.shares, strict=True))
+            / COLOUR_SPREAD**2
+        )
+
+    def learnt(self, new: Looks) -> Looks:
+        """The remembered looks after another sighting."""
+        blue, green, red = (
+            one + LEARNING * (two - one) for one, two in zip(self.shares, new.shares, strict=True)
+        )
+        return Looks(
+            self.length + LEARNING * (new.length - self.length),
+            self.width + LEARNING * (new.width - self.width),
+            self.area + LEARNING * (new.area - self.area),
+            (blue, green, red),
+        )
+
+    def outline(self, axis: float) -> Outline:
+        return Outline(self.length, self.width, axis)
+
+
+@dataclass(frozen=True, slots=True)
+class Memory:
+    """The robot when it was last seen. place: px.  seen_at: s."""
+
+    place: Place
+    seen_at: float
+    looks: Looks | None = None
+
+    def looks_at(self, time: float) -> Looks | None:
+        """What it must look like at a time, s; None when that is forgotten."""
+        return self.looks if time - self.seen_at <= ELSEWHERE_AFTER else None
+
+
+class Steadiness:
+    """Counts sightings that agree with each other. length: of the body, px."""
+
+    def __init__(self, length: float) -> None:
+        self._apart = STEADY * length
+        self._place: Place = (0.0, 0.0)
+        self._count = 0
+
+    def sees(self, place: Place) -> int:
+        """How many sightings in a row agree, with this one."""
+        agrees = math.dist(place, self._place) <= self._apart
+        self._place, self._count = place, self._count + 1 if agrees else 1
+        return self._count
+
+    def broken(self) -> None:
+        self._count = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Rival:
+    """Another blob of the robot's colour and size. place: px.  seen_at: s."""
+
+    place: Place
+    seen_at: float
+
+
+class Company:
+    """Who else is on the plate. length: of a body, px."""
+
+    def __init__(self, length: float) -> None:
+        self._length = length
+        self._rivals: list[Rival] = []
+        self._looked_at = -math.inf
+
+    def clear(self) -> None:
+        self._rivals, self._looked_at = [], -math.inf
+
+    def unwatched_for(self, now: float) -> float:
+        """Since the whole picture was last looked at, s."""
+        gap = now - self._looked_at
+        return gap if gap >= 0.0 else math.inf
+
+    def places(self, now: float, within: float) -> tuple[Place, ...]:
+        """Of those that were seen in the last `within` seconds, px."""
+        return tuple(rival.place for rival in self._rivals if now - rival.seen_at <= within)
+
+    def owners(self, now: float) -> list[Owner]:
+        """What each of them may be taken for now, in the order of `recognise`."""
+        return [
+            Owner(
+                rival.place, sigma_after(now - rival.seen_at, self._length), rival.seen_at >= self._looked_at
+            )
+            for rival in self._rivals
+        ]
+
+    def recognise(self, pairs: Mapping[int, Place], now: float) -> None:
+        """The whole picture was looked at: these of them (by number) were seen, at these places."""
+        for number, place in pairs.items():
+            self._rivals[number] = Rival(place, now)
+        self._looked_at = now
+
+    def meet(self, others: Sequence[Place], now: float, *, everywhere: bool) -> None:
+        """All that was seen beside the robot, which is known for sure; everywhere: in the whole picture.
+
+        Who has not been seen for long has left, or was taken away: the robot itself is here.
+        """
+        if everywhere:
+            self._looked_at = now
+        unseen = [
+            rival
+            for rival, owner in zip(self._rivals, self.owners(now), strict=True)
+            if now - rival.seen_at <= ELSEWHERE_AFTER and not any(owner.reaches(place) for place in others)
+        ]
+        self._rivals = [*(Rival(place, now) for place in others), *unseen][: 2 * MOST]

@@ -1,0 +1,171 @@
+"""Which blob of a picture is the robot, by its place, its looks and who else is there."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from vision.tracking.colour import Image
+from vision.tracking.detection import Blob, Candidate, Window
+from vision.tracking.identity import MOST, Owner, Question, Verdict
+from vision.tracking.memory import LOOKS_GATE, Company, Looks
+from vision.tracking.seeking import Seeker
+from vision.tracking.windows import Place, touches
+
+POINTED = 0.75
+"""Somebody who points at a robot does not miss its middle by more, body lengths."""
+SAME = 0.35
+"""Two places nearer to each other than that are one blob, seen roughly and seen precisely; body lengths: two robots
+side by side are 0.4 apart."""
+
+
+@dataclass(frozen=True, slots=True)
+class View:
+    """One picture. at: capture time, s.  window: the part that is looked at, px."""
+
+    image: Image
+    at: float
+    window: Window
+
+
+@dataclass(frozen=True, slots=True)
+class Robot:
+    """What the robot should be like. owner: its place.  looks: None when they are not known."""
+
+    owner: Owner
+    looks: Looks | None
+
+
+@dataclass(frozen=True, slots=True)
+class Found:
+    """What a view holds.
+
+    robot: the robot's blob, if it is told.  others: places of all other blobs that are wholly in view, px.
+    doubtful: places of those among which it is not told.
+    is_covered: where it should be is something of its colour that does not look like it.
+    """
+
+    robot: Blob | None
+    others: tuple[Place, ...]
+    doubtful: tuple[Place, ...] = ()
+    is_covered: bool = False
+
+
+class Recogniser:
+    """Keeps track of who else is there, too. length: of the body, px.  span: a typical distance in the picture, px."""
+
+    def __init__(self, seeker: Seeker, company: Company, length: float, span: float) -> None:
+        self._seeker = seeker
+        self._company = company
+        self._length = length
+        self._span = span
+
+    def look(self, view: View, robot: Robot) -> Found:
+        """The robot within a window."""
+        rivals = self._company.owners(view.at)
+        seen = self._seeker.glance(view.image, view.window)
+        if seen is not None and _is_surely(seen, robot, rivals):
+            return Found(robot=seen, others=())
+        candidates = self._seeker.within(view.image, view.window)
+        near = _nearest(candidates, robot.owner, rivals)
+        blobs = [self._seeker.measured(view.image, view.window, candidate) for candidate in near]
+        verdict = self._verdict(robot, rivals, near, blobs)
+        whole = [each for each in candidates if not touches(each.box, view.window)]
+        return _found(verdict, near, blobs, whole, robot)
+
+    def search(self, view: View, robot: Robot) -> Found:
+        """The robot anywhere in the picture."""
+        candidates = self._seeker.everywhere(view.image)
+        rivals = self._company.owners(view.at)
+        near = _nearest(candidates, robot.owner, rivals)
+        blobs = [
+            self._seeker.beneath(view.image, each.centre) if robot.owner.reaches(each.centre) else None
+            for each in near
+        ]
+        verdict = self._verdict(robot, rivals, near, blobs)
+        self._company.recognise(
+            {rival: near[number].centre for rival, number in verdict.rivals.items()}, view.at
+        )
+        return _found(verdict, near, blobs, candidates, robot)
+
+    def watch(self, view: View, found: Found) -> None:
+        """The whole picture, for who else is there while the robot is known."""
+        robot = found.robot
+        places = [candidate.centre for candidate in self._seeker.everywhere(view.image)]
+        if robot is not None:
+            places = [place for place in places if math.dist(place, robot.centre) > SAME * self._length]
+        self._company.meet(places, view.at, everywhere=True)
+
+    def pointed_out(self, view: View, told: Place) -> Place:
+        """The place of the blob that somebody points to, or the point itself without one; the rest are others."""
+        places = [candidate.centre for candidate in self._seeker.everywhere(view.image)]
+        nearest = min(places, key=lambda place: math.dist(place, told), default=told)
+        pointed = nearest if math.dist(nearest, told) <= POINTED * self._length else told
+        others = [place for place in places if math.dist(place, pointed) > SAME * self._length]
+        self._company.meet(others, view.at, everywhere=True)
+        return pointed
+
+    def _verdict(
+        self, robot: Robot, rivals: Sequence[Owner], near: Sequence[Candidate], blobs: Sequence[Blob | None]
+    ) -> Verdict:
+        places = [candidate.centre for candidate in near]
+        if len(places) == 1 and not any(rival.reaches(places[0]) for rival in rivals):
+            return Verdict(0 if robot.owner.reaches(places[0]) else None, (), {})
+        unlike = [_unlike(blob, robot.looks) for blob in blobs]
+        return Question(robot.owner, rivals, places, unlike, self._span).answer()
+
+
+def _nearest(candidates: Sequence[Candidate], robot: Owner, rivals: Sequence[Owner]) -> list[Candidate]:
+    """Those that are reckoned with: first what no rival in view explains, then by distance from the robot's place."""
+
+    def order(candidate: Candidate) -> tuple[bool, float]:
+        place = candidate.centre
+        is_known = math.isinf(robot.sigma) and any(each.in_view and each.reaches(place) for each in rivals)
+        return is_known, robot.offset(place)
+
+    return list(candidates) if len(candidates) <= 1 else sorted(candidates, key=order)[:MOST]
+
+
+def _is_surely(blob: Blob, robot: Robot, rivals: Sequence[Owner]) -> bool:
+    """Whether a blob that is alone in its window is the robot and nobody else."""
+    if not robot.owner.reaches(blob.centre) or any(rival.reaches(blob.centre) for rival in rivals):
+        return False
+    return _unlike(blob, robot.looks) < LOOKS_GATE
+
+
+def _unlike(blob: Blob | None, looks: Looks | None) -> float:
+    """What speaks against a blob's being the robot by its looks.
+
+    No more than the gate: a robot that something covers or touches looks like nothing that is known.
+    """
+    if blob is None:
+        return LOOKS_GATE
+    return 0.0 if looks is None else min(looks.unlike(Looks.of(blob)), LOOKS_GATE)
+
+
+def _found(
+    verdict: Verdict,
+    near: Sequence[Candidate],
+    blobs: Sequence[Blob | None],
+    candidates: Sequence[Candidate],
+    robot: Robot,
+) -> Found:
+    """Only a robot that looks like itself is measured."""
+    chosen = None if verdict.robot is None else near[verdict.robot]
+    blob = None if verdict.robot is None else blobs[verdict.robot]
+    if _unlike(blob, robot.looks) >= LOOKS_GATE:
+        blob = None
+    is_bounded, place = math.isfinite(robot.owner.sigma), robot.owner.place
+    return Found(
+        robot=blob,
+        others=tuple(candidate.centre for candidate in candidates if candidate is not chosen),
+        doubtful=tuple(near[number].centre for number in verdict.doubtful),
+        is_covered=blob is None
+        and is_bounded
+        and (chosen is not None or any(_holds(each.box, place) for each in near)),
+    )
+
+
+def _holds(box: Window, place: Place) -> bool:
+    return box[0] <= place[0] <= box[2] and box[1] <= place[1] <= box[3]

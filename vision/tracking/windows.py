@@ -1,0 +1,57 @@
+"""Where in the picture to look: the window that surely holds the body."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from vision.tracking.coverage import RIM
+from vision.tracking.detection import Window
+
+Place = tuple[float, float]
+"""(u, v) in the picture, px."""
+
+SPARE = RIM
+"""A body that just fits leaves this much room to the window's edge for its blurred rim, px."""
+SIGMAS = 4.0
+"""The window holds the body when its heading is that many standard deviations off."""
+
+
+@dataclass(frozen=True, slots=True)
+class Outline:
+    """A body lying in the picture. length, width: px.  axis: direction of the long axis in the picture, rad."""
+
+    length: float
+    width: float
+    axis: float
+
+    def half_extent(self, axis_sigma: float) -> Place:
+        """Half of its extent along u and v, px, when the axis is known to `axis_sigma`, rad."""
+        play = math.sin(SIGMAS * axis_sigma) if SIGMAS * axis_sigma <= 0.5 * math.pi else 1.0
+        along_u = min(abs(math.cos(self.axis)) + play, 1.0)
+        along_v = min(abs(math.sin(self.axis)) + play, 1.0)
+        return (
+            0.5 * (self.length * along_u + self.width * along_v),
+            0.5 * (self.length * along_v + self.width * along_u),
+        )
+
+
+def window_around(place: Place, half: Place, whole: Window) -> Window:
+    """The part of the picture within `half` (px along u and v) of a place; at least one pixel of it."""
+    _, _, width, height = whole
+    left, right = _span(place[0], half[0], width)
+    top, bottom = _span(place[1], half[1], height)
+    return left, top, right, bottom
+
+
+def _span(place: float, half: float, limit: int) -> tuple[int, int]:
+    """From a place less half to a place plus half, within 0..limit; a far place yields the nearest pixel."""
+    half = min(half, float(limit))
+    place = min(max(place, -half), limit + half)
+    low = min(max(math.floor(place - half), 0), limit - 1)
+    return low, max(min(math.ceil(place + half), limit), low + 1)
+
+
+def touches(box: Window, window: Window) -> bool:
+    """Whether a box reaches the window's edge, so that the window may have cut the blob."""
+    return box[0] <= window[0] or box[1] <= window[1] or box[2] >= window[2] or box[3] >= window[3]

@@ -1,0 +1,92 @@
+/** What the camera's setup knows, asks and does: every answer lands in the store's `setup`, errors at their place. */
+import { get, set, useStore } from "../store.js";
+import { post, Problem, read } from "../live/rest.js";
+
+export const STEPS = ["camera", "colour", "lens", "plane", "robot"];
+
+const CLOSED = {
+  step: "camera",
+  /** Answers of the server, null until they come. */
+  cameras: null, vision: null, calibration: null, star: null, latency: null,
+  /** {place, words} of what goes on, or null. */
+  working: null,
+  /** What the newest view of the board showed: {newest: [[u, v]] or null, hint}; who takes views; the board that
+      is shown to a simulated camera: "flat", "next" or null. */
+  found: null, taking: null, board: null,
+  /** Place of an action -> what went wrong with it, and what was done. */
+  errors: {}, done: {},
+};
+
+/** Where each answer comes from. */
+const SOURCES = {
+  cameras: "/cameras", vision: "/vision", calibration: "/calibration", star: "/calibration/star", latency: "/calibration/latency",
+};
+
+export const useSetup = (select) => useStore((state) => (state.setup ? select(state.setup) : null));
+
+export const change = (part) => get().setup && set({ setup: { ...get().setup, ...part } });
+
+export function openSetup() {
+  set({ setup: CLOSED });
+  for (const name of Object.keys(SOURCES)) learn(name);
+}
+
+export const closeSetup = () => set({ setup: null });
+
+/** What was said of one step does not stay for the next, but what could not be read at all does. */
+export function goTo(step) {
+  const { setup } = get();
+  const unread = Object.keys(SOURCES).filter((name) => setup[name] === null).map((name) => [name, setup.errors[name]]);
+  change({ step, errors: Object.fromEntries(unread), done: {} });
+}
+
+/** Reads one of the answers again; what cannot be read is said at its place. */
+export async function learn(name) {
+  try {
+    change({ [name]: await read(SOURCES[name]) });
+  } catch (problem) {
+    if (!(problem instanceof Problem)) throw problem;
+    note("errors", name, problem.message);
+  }
+}
+
+export function note(kind, place, text) {
+  const { setup } = get();
+  if (setup) change({ [kind]: { ...setup[kind], [place]: text } });
+}
+
+/**
+ * Does one thing at a time and says so meanwhile.
+ * @param place where an error is shown; words: "Looking for the board"; call: the work
+ * @returns what `call` answers, or null when it was refused or something else goes on
+ */
+export async function doing(place, words, call) {
+  if (!get().setup || get().setup.working) return null;
+  change({ working: { place, words }, errors: { ...get().setup.errors, [place]: "" }, done: { ...get().setup.done, [place]: "" } });
+  try {
+    return (await call()) ?? true;
+  } catch (problem) {
+    if (!(problem instanceof Problem)) throw problem;
+    note("errors", place, problem.message);
+    return null;
+  } finally {
+    change({ working: null });
+  }
+}
+
+/** The same for what ends in the rig file: afterwards it can be undone at this place. */
+export async function saving(place, words, call) {
+  const answer = await doing(place, words, call);
+  if (answer === null) return null;
+  set({ rig: await read("/rig") });
+  note("done", place, "saved");
+  return answer;
+}
+
+/** The rig file as it was before the last save. */
+export async function undo(place) {
+  const answer = await doing(place, "Undoing", () => post("/rig/undo"));
+  if (answer === null) return;
+  note("done", place, "undone");
+  await Promise.all(["vision", "calibration"].map(learn));
+}
