@@ -339,7 +339,9 @@ def in_words(error: ValidationError, place: Callable[[tuple[str | int, ...]], st
     lines = []
     for problem in error.errors(include_url=False):
         where = ".".join(str(part) for part in problem["loc"]) or "the whole file"
-        is_one_value = problem["type"] not in ("missing", "extra_forbidden") and not isinstance(problem["input"], dict)
+        is_one_value = problem["type"] not in ("missing", "extra_forbidden") and not isinstance(
+            problem["input"], dict
+        )
         given = f" (given: {problem['input']!r})" if is_one_value else ""
         lines.append(f"  {where}: {problem['msg']}{given}{place(problem['loc'])}")
     return "\n".join(lines)

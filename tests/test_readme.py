@@ -58,7 +58,7 @@ def test_the_example_rig_file_shows_every_default() -> None:
     text = (ROOT / "rig.example.toml").read_text(encoding="utf-8")
     for section in RigFile().model_dump().values():
         if isinstance(section, dict):
-            assert all(f"{name} =" in text or f".{name}]" in text for name in section)
+            assert all(f"{name} =" in text or f".{name}]" in text or f".{name}." in text for name in section)
 
 
 def test_the_make_targets_of_the_readme_exist() -> None:

@@ -30,7 +30,7 @@ def test_a_covered_robot_is_measured_again_in_the_third_picture_at_the_latest(lo
     scene = Scene("covered", (hand(longest, 0.1),))
     for seed in seeds:
         waited = None
-        for each in follow(scene, play(scene, seed, 110)):
+        for each in follow(scene, play(scene, seed, 150)):
             if not each.is_plain:
                 waited = 0
             elif waited is not None:
