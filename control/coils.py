@@ -12,13 +12,13 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Literal
 
 import magpylib
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.transform import Rotation
 
+from control.axes import AXES, Axis
 from control.field_map import FieldMap, PlaneElements
 from control.model import Pivot
 from control.registration import COINCIDENT, Registration
@@ -26,9 +26,6 @@ from control.snapshot import Vector
 
 Matrix = tuple[Vector, Vector, Vector]
 """Three rows of three."""
-
-Axis = Literal["x", "y", "z"]
-AXES: tuple[Axis, Axis, Axis] = ("x", "y", "z")
 
 MAP_MARGIN = 0.02
 """How far the field map reaches beyond the workspace, m: the robot is 10 mm long and may overrun an edge."""

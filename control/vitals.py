@@ -178,7 +178,7 @@ class Vitals:
         return Health(
             tick_gap=gap,
             frame_age=now - self._frame_at if frame is not None else math.inf,
-            frame_delay=self._frame_at - frame.captured_at if frame is not None else math.inf,
+            frame_delay=now - frame.captured_at if frame is not None else math.inf,
             frame_problem=self._frame_problem,
             identical_frames=perception.identical_frames,
             tracking=perception.tracking,

@@ -36,6 +36,7 @@ from server.api.schemas import MM
 from server.api.ticks import TickText
 from server.calibration_runs import CalibrationRuns
 from server.camera_calibration import CameraCalibration
+from server.colour_picker import ColourPicker
 from server.door import Door
 from server.fresh_files import ALWAYS_ASK, FreshFiles
 from server.pictures import Pictures
@@ -99,6 +100,7 @@ def create_app(rig: Rig, hosts: Collection[str] = (), changes: RigChanges | None
     app.state.pictures = Pictures(rig)
     app.state.camera_calibration = CameraCalibration(rig)
     app.state.calibration_runs = CalibrationRuns(rig)
+    app.state.colour_picker = ColourPicker(rig)
     app.state.tick_text = TickText()
     app.state.scene = SceneFeed(rig, lambda: scene_geometry(rig))
     app.add_middleware(Door, hosts=hosts)

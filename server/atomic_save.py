@@ -37,10 +37,13 @@ class Staged:
         _sweep(self._path)
         self._new = _written(self._path, text.encode("utf-8"))
 
-    def commit(self) -> None:
-        """Keep the old file as `.previous` and let the new one take its place; raises OSError."""
-        if self._path.exists():
-            _put(_written(self._path, self._path.read_bytes()), previous_of(self._path))
+    def commit(self, before: str) -> None:
+        """Keep the old file as `.previous` and let the new one take its place; raises OSError.
+
+        before: what is kept where there is no old file.
+        """
+        old = self._path.read_bytes() if self._path.exists() else before.encode("utf-8")
+        _put(_written(self._path, old), previous_of(self._path))
         os.replace(self._new, self._path)
         _sync_folder(self._path.parent)
 

@@ -13,7 +13,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from enum import StrEnum
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from control.calibration.turning import Unclear
 from control.identification import TooLittle
@@ -21,7 +21,8 @@ from control.runs import RunState
 from control.safety import Refused
 from control.snapshot import RigState
 from server.assembly import Machine
-from server.calibration_walk import CalibrationWalk, Findings, with_advice
+from server.calibration_walk import CalibrationWalk, Findings, changed_since, with_advice
+from server.settings import RigFile
 from server.streams import StreamEnded
 
 if TYPE_CHECKING:
@@ -50,7 +51,10 @@ class Stage(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Calibration:
-    """progress: 0..1.  reason: why it failed.  run_id: of its run.  at: when it was done, with its time zone."""
+    """progress: 0..1.  reason: why it failed.  run_id: of its run.  at: when it was done, with its time zone.
+
+    settings, rests_on: the rig that it was measured on, and what of it the findings depend on.
+    """
 
     stage: Stage = Stage.IDLE
     progress: float = 0.0
@@ -58,7 +62,8 @@ class Calibration:
     run_id: str = ""
     findings: Findings | None = None
     at: str = ""
-    is_saved: bool = False
+    settings: RigFile | None = None
+    rests_on: tuple[str, ...] = ()
 
     @property
     def goes_on(self) -> bool:
@@ -87,7 +92,9 @@ class CalibrationRuns:
         with contextlib.ExitStack() as watching:
             watching.enter_context(self._rig.watched(walk.watch))
             run = await self._rig.start_run(walk.request)
-            self._newest[kind] = Calibration(Stage.WALKING, run_id=run.id)
+            self._newest[kind] = Calibration(
+                Stage.WALKING, run_id=run.id, settings=self._rig.settings, rests_on=walk.rests_on
+            )
             work = self._carry_out(kind, walk, watching.pop_all())
             self._task = asyncio.create_task(work, name=f"calibration {kind}")
         return self._newest[kind]
@@ -98,9 +105,18 @@ class CalibrationRuns:
             self._task.cancel()
             await asyncio.gather(self._task, return_exceptions=True)
 
-    def saved(self, kind: Kind) -> None:
-        """Its findings stand in the rig file now."""
-        self._newest[kind] = replace(self._newest[kind], is_saved=True)
+    def to_save(self, kind: Kind) -> dict[str, Any]:
+        """What its findings change in the rig file; raises `Refused` where they do not hold for the rig as it is."""
+        value = self._newest[kind]
+        if value.findings is None or value.settings is None:
+            raise Refused(f"the calibration {kind.value!r} has found nothing yet; start it")
+        changed = changed_since(value.settings, self._rig.settings, value.findings, value.rests_on)
+        if changed:
+            raise Refused(
+                f"{', '.join(changed)} changed since the calibration {kind.value!r} was measured, which holds for the "
+                "rig as it was then; measure again"
+            )
+        return value.findings.changes
 
     async def _carry_out(self, kind: Kind, walk: CalibrationWalk, watching: contextlib.ExitStack) -> None:
         with watching:

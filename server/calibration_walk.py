@@ -9,6 +9,8 @@ from typing import Any, Protocol
 from control.model import Pose
 from control.runs import RunRequest
 from control.snapshot import Snapshot
+from server.rig_file import differences, merged
+from server.settings import RigFile
 
 ENOUGH_PASSES = 1000.0
 """Such a walk ends by itself; the path, which it does not look at, must not end it sooner."""
@@ -26,6 +28,8 @@ class CalibrationWalk(Protocol):
     """One walk, from the question whether it may begin to what it has shown."""
 
     request: RunRequest
+    rests_on: tuple[str, ...]
+    """Sections and fields of the rig file, dotted: with other values there, what is found does not hold."""
     advice: str
     """What may be the matter when the walk does not come to its end, "" for nothing special."""
 
@@ -44,6 +48,14 @@ class CalibrationWalk(Protocol):
     def findings(self) -> Findings:
         """What the walk has shown; raises `TooLittle` or `Unclear`."""
         ...
+
+
+def changed_since(before: RigFile, now: RigFile, findings: Findings, rests_on: tuple[str, ...]) -> list[str]:
+    """Names of the fields that findings rest on and that are no longer as at the measurement (`before`); those
+    which the findings themselves have set are as they should be."""
+    saved = RigFile.model_validate(merged(before.model_dump(mode="json"), findings.changes))
+    edited = set(differences(before, now)) & set(differences(saved, now))
+    return sorted(name for name in edited if any(f"{name}.".startswith(f"{part}.") for part in rests_on))
 
 
 def with_advice(reason: str, advice: str) -> str:

@@ -77,6 +77,14 @@ def calibrate_gait(
 class StarWalk:
     """Keeps each accepted sighting of the run with the field of its instant."""
 
+    rests_on: tuple[str, ...] = (
+        "camera",
+        "robot",
+        "coils",
+        "estimator.actuation_delay_ms",
+        "vision.heading_offset_deg",
+    )
+
     def __init__(self, machine: Machine, gait: Gait, star: Star) -> None:
         self.samples: list[Sample] = []
         self.request = _request(gait, star)

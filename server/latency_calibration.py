@@ -43,6 +43,7 @@ class LatencyWalk:
     """What to walk, what to note meanwhile, and what it says."""
 
     advice = ""
+    rests_on: tuple[str, ...] = ("camera", "estimator.actuation_delay_ms")
 
     def __init__(self, machine: Machine, gait: Gait, wiggle: WiggleParameters) -> None:
         self._loop = machine.loop

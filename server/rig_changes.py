@@ -96,8 +96,12 @@ class RigChanges:
 
     async def patch(self, changes: Mapping[str, Any]) -> Change:
         """Apply nested changes and save them; raises ValidationError, `RigFileError`, `Refused`."""
+        return await self.alter(lambda _: changes)
+
+    async def alter(self, changes: Callable[[RigFile], Mapping[str, Any]]) -> Change:
+        """The same with changes that depend on what the file has: told when no other change is under way."""
         async with self._one_at_a_time:
-            plan = self._store.plan(changes)
+            plan = self._store.plan(changes(self._store.settings))
             return await self._apply_and_save(plan)
 
     async def undo(self) -> Change:
@@ -122,14 +126,16 @@ class RigChanges:
             change = await self._apply(plan)
             try:
                 await asyncio.to_thread(self._store.commit, staged, plan)
-            except RigFileError:
-                await self._put_back(before, change)
+            except RigFileError as error:
+                await self._put_back(before, error)
                 raise
         return self._done(change, f"the rig file {self._store.path} was saved")
 
     async def _apply(self, plan: Plan) -> Change:
-        """Let the rig run with the plan's settings. What differs counts, not what was asked."""
-        wanted = self._as_run(plan.settings)
+        return Change(plan.changed, rebuilt=await self._run_with(self._as_run(plan.settings)))
+
+    async def _run_with(self, wanted: RigFile) -> bool:
+        """Whether the machine was rebuilt for it. What differs counts, not what was asked."""
         fields = differences(self._rig.settings, wanted)
         bound = tuple(sorted(set(fields) - LIVE))
         rebuild = not all(map(_is_of_looks, bound)) or self._rig.is_lost
@@ -140,7 +146,7 @@ class RigChanges:
             await self._rig.retune(wanted)
         elif fields:
             self._rig.take_settings(wanted)
-        return Change(plan.changed, rebuild)
+        return rebuild
 
     def _require_disarmed(self, fields: tuple[str, ...]) -> None:
         state = self._rig.snapshot.rig
@@ -155,13 +161,17 @@ class RigChanges:
             raise DoNotGoTogether(str(error)) from error
         await self._rig.rebuild(wanted)
 
-    async def _put_back(self, settings: RigFile, change: Change) -> None:
-        if change.rebuilt:
-            await self._rig.rebuild(settings)
-        elif any(map(_is_of_looks, change.fields)):
-            await self._rig.retune(settings)
-        else:
-            self._rig.take_settings(settings)
+    async def _put_back(self, before: RigFile, failure: RigFileError) -> None:
+        """The rig as it was; one that somebody has armed in the meantime keeps what is not saved, and it is told."""
+        try:
+            await self._run_with(before)
+        except Refused as refusal:
+            reason = (
+                f"{failure}, but the rig runs with values that are not in its file, since {refusal}. Disarm it, and "
+                "reload the rig file or save the values again"
+            )
+            self._rig.announce("warn", EVENT, reason)
+            raise RigFileError(reason) from failure
 
     def _done(self, change: Change, what: str) -> Change:
         self._seen = ""

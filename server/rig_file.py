@@ -21,6 +21,8 @@ NAME = "rig.toml"
 """The rig file that the data folder may hold."""
 
 HEADING = "# A rig of pivotrig. What is left out here is the paper's rig, simulated.\n"
+NEW = f"{HEADING}version = {FORMAT}\n"
+"""A rig file with nothing in it."""
 
 
 class RigFileError(ValueError):
@@ -163,7 +165,7 @@ def with_settings(text: str, before: RigFile, after: RigFile) -> str:
     A layout in which that does not work out (some with dotted keys or inline tables) is given up for a plain one with
     every value.
     """
-    document = tomlkit.parse(text or f"{HEADING}version = {FORMAT}\n")
+    document = tomlkit.parse(text or NEW)
     try:
         _write(document, before, after)
     except ValueError:  # tomlkit puts no table into an inline one
@@ -249,6 +251,8 @@ class RigStore:
     def plan_of_previous(self) -> Plan:
         """The file as it was before the last save; raises `RigFileError`."""
         path = previous_of(self.path)
+        if not is_there(path):
+            raise RigFileError(f"there is nothing to undo: no earlier version of {self.path} has been kept")
         return self._plan_of(read(path), path)
 
     def _plan_of(self, text: str, path: Path) -> Plan:
@@ -260,12 +264,15 @@ class RigStore:
         """Whether nobody else has written the file; one that was deleted counts as unchanged."""
         return not self.path.exists() or read(self.path) == self.text
 
-    def stage(self, plan: Plan) -> Staged:
-        """The new file, complete on the disk beside the old one; raises `RigFileError`."""
+    def _require_as_read(self) -> None:
         if not self.is_as_read:
             raise ChangedOnDisk(
                 f"the rig file {self.path} was edited since it was read; reload it first (POST /api/v1/rig/reload)"
             )
+
+    def stage(self, plan: Plan) -> Staged:
+        """The new file, complete on the disk beside the old one; raises `RigFileError`."""
+        self._require_as_read()
         try:
             return Staged(self.path, plan.text)
         except OSError as error:
@@ -273,8 +280,9 @@ class RigStore:
 
     def commit(self, staged: Staged, plan: Plan) -> None:
         """Put the staged file in place, the old one kept beside it; raises `RigFileError`."""
+        self._require_as_read()  # a machine may have been built in the meantime, which takes seconds
         try:
-            staged.commit()
+            staged.commit(self.text or NEW)
         except OSError as error:
             raise self._not_saved(error) from error
         self._take(plan)
@@ -284,11 +292,11 @@ class RigStore:
 
         Raises `RigFileError` when that cannot be kept; the file counts as read all the same.
         """
-        before, was_saved = self.text, self.is_saved
+        before = self.text
         self._take(plan)
         try:
-            if was_saved and plan.text != before:
-                keep_previous(self.path, before)
+            if plan.text != before:
+                keep_previous(self.path, before or NEW)
         except OSError as error:
             raise RigFileError(
                 f"the rig file {self.path} was read and is in force, but what it was before cannot be kept: "

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from typing import Annotated, Self
 
-from pydantic import Field, model_validator
+from pydantic import AfterValidator, Field, model_validator
 
 from server.section import Positive, Section
 
@@ -35,7 +36,19 @@ class ProfileSection(ColourSection):
 
 DEFAULT_PROFILE = "default"
 """Name of the colours that stand in [vision] itself."""
-ProfileName = Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9 _-]{0,39}$")]
+_NAME = re.compile(r"[A-Za-z0-9](?:[A-Za-z0-9 _-]{0,38}[A-Za-z0-9_-])?")
+
+
+def _plain(name: str) -> str:
+    if not _NAME.fullmatch(name):
+        raise ValueError(
+            "a profile's name has 1 to 40 letters a-z, digits, spaces, - and _, the first one a letter or a digit and "
+            "the last one no space"
+        )
+    return name
+
+
+ProfileName = Annotated[str, AfterValidator(_plain)]
 
 
 class VisionSection(ProfileSection):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from control.coils import AXES
+from control.axes import AXES
 from control.snapshot import Vector
 
 LEADS = tuple(f"{sign}{axis}" for sign in ("", "-") for axis in AXES)

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable
-from typing import Annotated, Any, Literal, TypeVar
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from fastapi import APIRouter, Depends, Query, Response
@@ -15,19 +16,16 @@ from server.api.access import TheChanges, TheRig
 from server.api.body import StrictRoute
 from server.api.calibration_answers import looked_json, pending_lens_json, pending_plane_json, state_json
 from server.api.problems import Problem, Rejected
-from server.api.rig_file import served, told
+from server.api.rig_file import own_file, told
 from server.api.schemas import Edge
 from server.board_sheet import board_pdf
 from server.camera_calibration import CameraCalibration, NoBoard
 from server.optics import board_of
-from server.rig_changes import RigChanges
 from server.settings import MM
 from vision.calibration.board import Board
 from vision.calibration.lens import Lens
 from vision.calibration.plane import PlaneFit, plane_from_corners, plane_from_marks
 from vision.camera_model import CalibrationError
-
-T = TypeVar("T")
 
 router = APIRouter(prefix="/calibration", tags=["calibration"], route_class=StrictRoute)
 
@@ -81,10 +79,11 @@ class FromMarks(Edge):
 PlaneBody = Annotated[FromBoard | FromCorners | FromMarks, Field(discriminator="method")]
 
 
-async def worked_out(work: Callable[[], T]) -> T:
-    """Off the event loop and off the rig's thread; what does not work out is a problem document."""
+@contextmanager
+def worked_out() -> Iterator[None]:
+    """What does not work out is a problem document."""
     try:
-        return await asyncio.to_thread(work)
+        yield
     except NoBoard as error:
         raise Rejected(Problem(422, "No board", str(error))) from error
     except CalibrationError as error:
@@ -100,8 +99,8 @@ async def state(calibration: TheCalibration) -> dict[str, Any]:
 @router.post("/lens/views")
 async def take_view(calibration: TheCalibration) -> dict[str, Any]:
     """Look for the board in the newest picture and take it as a view, if it brings something new."""
-    frame = calibration.frame()
-    return looked_json(calibration, await worked_out(lambda: calibration.look(frame)))
+    with worked_out():
+        return looked_json(calibration, await calibration.look())
 
 
 @router.delete("/lens/views")
@@ -114,20 +113,22 @@ async def forget_views(calibration: TheCalibration) -> dict[str, Any]:
 @router.post("/lens")
 async def solve_lens(calibration: TheCalibration) -> dict[str, Any]:
     """The lens from the views that were taken; nothing is saved yet."""
-    fit = await worked_out(calibration.solve_lens)
+    with worked_out():
+        fit = await calibration.solve_lens()
     return {**state_json(calibration), "pending_lens": pending_lens_json(fit)}
 
 
 @router.post("/plane")
 async def solve_plane(body: PlaneBody, calibration: TheCalibration) -> dict[str, Any]:
     """Where the camera is over the plate; nothing is saved yet."""
-    match body:
-        case FromBoard():
-            frame = calibration.frame()
-            fit = await worked_out(lambda: calibration.plane_of_board(frame))
-        case FromCorners() | FromMarks():
-            solve = _corners(body) if isinstance(body, FromCorners) else _marks(body)
-            fit = await worked_out(lambda: calibration.solve_plane(solve))
+    with worked_out():
+        match body:
+            case FromBoard():
+                fit = await calibration.plane_of_board()
+            case FromCorners():
+                fit = await calibration.solve_plane(_corners(body))
+            case FromMarks():
+                fit = await calibration.solve_plane(_marks(body))
     return {**state_json(calibration), "pending_plane": pending_plane_json(calibration, fit)}
 
 
@@ -145,32 +146,18 @@ def _marks(body: FromMarks) -> Callable[[Lens, float], PlaneFit]:
 @router.post("/save")
 async def save(calibration: TheCalibration, changes: TheChanges) -> dict[str, Any]:
     """Write what was found into the rig file; the rig, which must be disarmed, is rebuilt with it."""
+    lens, plane = calibration.lens, calibration.plane
     with told():
-        await _own_file(changes).patch(calibration.changes())
-    calibration.saved()
+        await own_file(changes).patch(calibration.changes())
+    calibration.saved(lens, plane)
     return state_json(calibration)
-
-
-def _own_file(changes: RigChanges | None) -> RigChanges:
-    """The rig file, unless its camera is another than the one that was calibrated."""
-    file = served(changes)
-    if "camera.uri" in file.public()["overridden"]:
-        raise Rejected(
-            Problem(
-                409,
-                "Another camera",
-                "This server simulates the camera of its rig file; what is calibrated here is not that camera's. "
-                "Start it without --sim to calibrate the real one.",
-            )
-        )
-    return file
 
 
 @router.delete("")
 async def take_out(calibration: TheCalibration, changes: TheChanges) -> dict[str, Any]:
     """Back to the optics that the rig file assumes; what was found and not saved goes, too."""
     with told():
-        await served(changes).patch({"camera": {"lens": None, "plane": None}})
+        await own_file(changes).patch({"camera": {"lens": None, "plane": None}})
     calibration.forget()
     return state_json(calibration)
 

@@ -63,6 +63,7 @@ def session_json(calibration: CameraCalibration) -> dict[str, Any]:
         "covered_px": _corners(calibration),
         "enough": calibration.views.is_enough,
         "hint": calibration.views.hint,
+        "board_shown": calibration.shown_board,
         "pending_lens": None if lens is None else pending_lens_json(lens),
         "pending_plane": None if plane is None else pending_plane_json(calibration, plane),
     }

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Annotated, Any
 
@@ -15,14 +15,15 @@ from control.controllers.wiggle import WiggleParameters
 from control.gait import Gait
 from server.api.access import TheChanges, TheRig
 from server.api.body import StrictRoute
-from server.api.problems import Problem, Rejected
-from server.api.rig_file import served, told
+from server.api.rig_file import own_file, told
 from server.api.schemas import MM, Edge
 from server.assembly import Machine
 from server.calibration_runs import Calibration, CalibrationRuns, Kind
 from server.calibration_walk import CalibrationWalk
 from server.gait_calibration import Star, StarWalk
 from server.latency_calibration import LatencyWalk
+from server.rig import Rig
+from server.rig_file import merged
 from server.settings import RigFile
 
 router = APIRouter(prefix="/calibration", tags=["calibration"], route_class=StrictRoute)
@@ -60,7 +61,7 @@ async def walk_star(runs: TheCalibrationRuns, rig: TheRig, body: StarBody | None
     body = body or StarBody()
     star = Star(body.legs, body.leg_mm * MM, math.radians(body.rate_deg_s))
     gait = replace(_still(rig.selection.gait), sweep=math.radians(body.sweep_deg), max_rate=star.rate)
-    return await _begin(runs, Kind.STAR, lambda machine: StarWalk(machine, gait, star))
+    return await _begin(runs, rig, Kind.STAR, lambda machine: StarWalk(machine, gait, star))
 
 
 @router.post("/latency", status_code=202)
@@ -68,19 +69,19 @@ async def wiggle(runs: TheCalibrationRuns, rig: TheRig, body: LatencyBody | None
     """Turn to and fro on the armed rig, and see how late the camera shows it."""
     body = body or LatencyBody()
     gait, parameters = _still(rig.selection.gait), WiggleParameters(turns=body.turns)
-    return await _begin(runs, Kind.LATENCY, lambda machine: LatencyWalk(machine, gait, parameters))
+    return await _begin(runs, rig, Kind.LATENCY, lambda machine: LatencyWalk(machine, gait, parameters))
 
 
 @router.get("/star")
 async def star_state(runs: TheCalibrationRuns, rig: TheRig) -> dict[str, Any]:
     """How far the star is, what it has found, and what the rig file has now."""
-    return {**calibration_json(runs[Kind.STAR]), "in_use": star_in_use(rig.settings)}
+    return {**calibration_json(runs[Kind.STAR], rig.settings), "in_use": star_in_use(rig.settings)}
 
 
 @router.get("/latency")
 async def latency_state(runs: TheCalibrationRuns, rig: TheRig) -> dict[str, Any]:
     """How far it is, what it has found, and what the rig file has now."""
-    return {**calibration_json(runs[Kind.LATENCY]), "in_use": latency_in_use(rig.settings)}
+    return {**calibration_json(runs[Kind.LATENCY], rig.settings), "in_use": latency_in_use(rig.settings)}
 
 
 @router.post("/star/save")
@@ -103,24 +104,18 @@ def _still(gait: Gait) -> Gait:
 
 
 async def _begin(
-    runs: CalibrationRuns, kind: Kind, make: Callable[[Machine], CalibrationWalk]
+    runs: CalibrationRuns, rig: Rig, kind: Kind, make: Callable[[Machine], CalibrationWalk]
 ) -> dict[str, Any]:
-    return calibration_json(await runs.start(kind, make))
+    return calibration_json(await runs.start(kind, make), rig.settings)
 
 
 async def _save(runs: CalibrationRuns, kind: Kind, changes: TheChanges) -> None:
-    findings = runs[kind].findings
-    if findings is None:
-        raise Rejected(
-            Problem(409, "Nothing to save", f"the calibration {kind.value!r} has found nothing yet; start it")
-        )
     with told():
-        await served(changes).patch(findings.changes)
-    runs.saved(kind)
+        await own_file(changes).alter(lambda _: runs.to_save(kind))
 
 
-def calibration_json(value: Calibration) -> dict[str, Any]:
-    """figures: with standard errors.  changes: what saving writes into the rig file."""
+def calibration_json(value: Calibration, settings: RigFile) -> dict[str, Any]:
+    """figures: with standard errors.  changes: what saving writes into the rig file.  saved: they are there."""
     findings = value.findings
     return {
         "stage": value.stage.value,
@@ -130,8 +125,13 @@ def calibration_json(value: Calibration) -> dict[str, Any]:
         "figures": None if findings is None else findings.figures,
         "changes": None if findings is None else findings.changes,
         "measured_at": value.at or None,
-        "saved": value.is_saved,
+        "saved": findings is not None and _has(settings, findings.changes),
     }
+
+
+def _has(settings: RigFile, changes: Mapping[str, Any]) -> bool:
+    values = settings.model_dump(mode="json")
+    return merged(values, changes) == values
 
 
 def star_in_use(settings: RigFile) -> dict[str, Any]:

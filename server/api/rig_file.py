@@ -67,6 +67,21 @@ def served(changes: RigChanges | None) -> RigChanges:
     return changes
 
 
+def own_file(changes: RigChanges | None) -> RigChanges:
+    """The file for what was measured here, unless its camera is another one."""
+    file = served(changes)
+    if "camera.uri" in file.public()["overridden"]:
+        raise Rejected(
+            Problem(
+                409,
+                "Another camera",
+                "This server simulates the rig of its file; what is measured here does not hold for the real one. "
+                "Start it without --sim to calibrate that.",
+            )
+        )
+    return file
+
+
 @contextmanager
 def told() -> Iterator[None]:
     """What can go wrong with a change, as a problem document."""

@@ -37,13 +37,16 @@ class BoardBody(Edge):
 
 @router.put("")
 async def show_board(body: BoardBody, rig: TheRig, calibration: TheCalibration) -> dict[str, Any]:
-    """Show the printed board to the simulated camera, or take it away; answers when a picture shows it."""
+    """Show the printed board to the simulated camera of a disarmed rig, or take it away, which may be done at any
+    time; answers when a picture shows it."""
     camera = rig.machine.camera
     if not isinstance(camera, SyntheticCamera):
         raise not_found("This rig is real; hold the printed board under its camera.")
-    require_disarmed(rig.snapshot.rig, "what the simulated camera sees")
+    if body.shown:
+        require_disarmed(rig.snapshot.rig, "what the simulated camera sees")
     number = calibration.held(body.pose == "next") if body.shown else 0
     await asyncio.to_thread(_show, camera, rig, body, number)
+    calibration.board_is_shown(camera, body.pose if body.shown else None)
     await _until_seen(rig)
     return {"shown": body.shown, "pose": body.pose, "number": number, "poses": len(HELD)}
 

@@ -2,26 +2,27 @@
 
 from __future__ import annotations
 
-import asyncio
 import base64
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Annotated, Any
 
-from fastapi import APIRouter
+from fastapi import APIRouter, Depends
 from pydantic import Field
+from starlette.requests import HTTPConnection
 
 from control.safety import Refused
 from server.api.access import TheChanges, TheRig
 from server.api.body import StrictRoute
 from server.api.problems import Problem, Rejected, invalid_field, not_found
 from server.api.rig_file import served, told
-from server.api.schemas import MM, Edge
+from server.api.schemas import Edge
+from server.colour_picker import ColourPicker, NoPicture
 from server.rig import Rig
 from server.rig_changes import RigChanges
 from server.vision_section import DEFAULT_PROFILE, ColourSection, ProfileName, VisionSection
 from server.vision_settings import colour_section
 from vision.encoding import encode_mask
-from vision.tracking.picking import Part, PickError, Proposal, Sight, pick
+from vision.tracking.picking import Part, PickError, Proposal
 
 router = APIRouter(prefix="/vision", tags=["vision"], route_class=StrictRoute)
 
@@ -68,6 +69,13 @@ class ProfileBody(Edge):
     name: ProfileName
 
 
+async def the_picker(connection: HTTPConnection) -> ColourPicker:
+    return connection.app.state.colour_picker
+
+
+ThePicker = Annotated[ColourPicker, Depends(the_picker)]
+
+
 @router.get("")
 async def looks(rig: TheRig) -> dict[str, Any]:
     """What the robot is looked for by, and whether it is seen."""
@@ -77,16 +85,17 @@ async def looks(rig: TheRig) -> dict[str, Any]:
 @router.patch("")
 async def alter(body: VisionChange, rig: TheRig, changes: TheChanges) -> dict[str, Any]:
     """Use other colours, sizes or another profile from the next frame on, and save them; on a disarmed rig."""
-    await save(changes, changed(body, rig.settings.vision))
+    await save(changes, lambda vision: changed(body, vision))
     return vision_json(rig)
 
 
 @router.post("/pick")
-async def pick_colour(body: PickBody, rig: TheRig) -> dict[str, Any]:
+async def pick_colour(body: PickBody, picker: ThePicker) -> dict[str, Any]:
     """What was clicked on in the newest picture, as thresholds that would find it; changes nothing."""
-    sight = sight_of(rig)
     try:
-        proposal = await asyncio.to_thread(pick, sight, (body.u, body.v), body.part)
+        proposal = await picker.pick((body.u, body.v), body.part)
+    except NoPicture as error:
+        raise Rejected(Problem(503, "No picture", str(error))) from error
     except PickError as error:
         raise Rejected(invalid_field(("u",), str(error))) from error
     return proposal_json(proposal)
@@ -95,26 +104,14 @@ async def pick_colour(body: PickBody, rig: TheRig) -> dict[str, Any]:
 @router.post("/profiles", status_code=201)
 async def save_profile(body: ProfileBody, rig: TheRig, changes: TheChanges) -> dict[str, Any]:
     """Save the colours in use under a name, and use them by it from now on."""
-    vision = rig.settings.vision
-    if body.name == DEFAULT_PROFILE or body.name in vision.profiles:
-        raise Refused(f'there is a profile "{body.name}" already; choose another name, or delete it first')
-    colours = vision.in_use.model_dump(mode="json", include={*ColourSection.model_fields, "end_mark"})
-    await save(changes, {"profile": body.name, "profiles": {body.name: colours}})
+    await save(changes, lambda vision: with_profile(body.name, vision))
     return vision_json(rig)
 
 
 @router.delete("/profiles/{name}")
 async def delete_profile(name: str, rig: TheRig, changes: TheChanges) -> dict[str, Any]:
     """Forget a profile that is not in use."""
-    vision = rig.settings.vision
-    if name == DEFAULT_PROFILE:
-        raise Refused(f'"{DEFAULT_PROFILE}" stands for the colours of the rig file\'s [vision] and stays')
-    if name not in vision.profiles:
-        there = ", ".join([DEFAULT_PROFILE, *vision.profiles])
-        raise not_found(f'There is no profile "{name}"; there are: {there}.')
-    if name == vision.profile:
-        raise Refused(f'the profile "{name}" is in use; switch to another one first')
-    await save(changes, {"profiles": {name: None}})
+    await save(changes, lambda vision: without_profile(name, vision))
     return vision_json(rig)
 
 
@@ -129,9 +126,30 @@ async def follow(body: PlaceBody, rig: TheRig) -> dict[str, Any]:
     return vision_json(rig)
 
 
-async def save(changes: RigChanges | None, vision: Mapping[str, Any]) -> None:
+async def save(changes: RigChanges | None, make: Callable[[VisionSection], Mapping[str, Any]]) -> None:
+    """make: of the rig file's [vision] as it is when no other change is under way, what changes in it."""
     with told():
-        await served(changes).patch({"vision": vision})
+        await served(changes).alter(lambda settings: {"vision": make(settings.vision)})
+
+
+def with_profile(name: str, vision: VisionSection) -> dict[str, Any]:
+    """The colours in use under a new name, and in use by it; raises `Refused`."""
+    if name == DEFAULT_PROFILE or name in vision.profiles:
+        raise Refused(f'there is a profile "{name}" already; choose another name, or delete it first')
+    colours = vision.in_use.model_dump(mode="json", include={*ColourSection.model_fields, "end_mark"})
+    return {"profile": name, "profiles": {name: colours}}
+
+
+def without_profile(name: str, vision: VisionSection) -> dict[str, Any]:
+    """Raises `Refused` for one that must stay."""
+    if name == DEFAULT_PROFILE:
+        raise Refused(f'"{DEFAULT_PROFILE}" stands for the colours of the rig file\'s [vision] and stays')
+    if name not in vision.profiles:
+        there = ", ".join([DEFAULT_PROFILE, *vision.profiles])
+        raise not_found(f'There is no profile "{name}"; there are: {there}.')
+    if name == vision.profile:
+        raise Refused(f'the profile "{name}" is in use; switch to another one first')
+    return {"profiles": {name: None}}
 
 
 def changed(body: VisionChange, vision: VisionSection) -> dict[str, Any]:
@@ -148,19 +166,6 @@ def changed(body: VisionChange, vision: VisionSection) -> dict[str, Any]:
         there = ", ".join([DEFAULT_PROFILE, *vision.profiles])
         raise Rejected(invalid_field(("profile",), f'there is no profile "{profile}"; there are: {there}'))
     return {**result, "profiles": {profile: colours}} if colours else result
-
-
-def sight_of(rig: Rig) -> Sight:
-    """The newest picture with what is needed to measure in it; a picture of another size is not measured in."""
-    frame, machine = rig.frame, rig.machine
-    width, height = machine.camera_model.size
-    if frame is None:
-        raise Rejected(Problem(503, "No picture", "The camera has not delivered a frame."))
-    if frame.image.shape != (height, width, 3):
-        words = f"The camera's picture is not {width}x{height} px in colour, as its calibration is."
-        raise Rejected(Problem(409, "Other size", words))
-    length = rig.settings.robot.body_length_mm * MM
-    return Sight(frame.image, machine.camera_model, machine.body_height, length)
 
 
 def vision_json(rig: Rig) -> dict[str, Any]:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from control.model import Frame
 from control.parts import Camera
-from server.diagnosis import colour
+from server.diagnosis import calibration, colour
 from server.diagnosis.check import Check, info, ok, problem, warning
 from server.settings import RigFile
 from vision.sources.addresses import shown
@@ -20,6 +20,7 @@ FIRST_FRAME = 3.0
 SLOWER = 0.9
 """Of the asked rate that still counts as kept."""
 CORRECT = "ask for what the camera offers in [camera] of the rig file, or leave the line out"
+INSPECT = "see to its cable and its supply; record a damaged film anew"
 DARK = 8.0
 """Mean grey level (0..255) of a picture behind a lens cap."""
 
@@ -41,15 +42,17 @@ def cannot_be_opened(error: CameraError) -> Check:
 
 
 def examine(camera: Camera, settings: RigFile) -> Iterator[Check]:
-    """The camera's own notes (what it does otherwise than asked) come with what was seen of it."""
-    frames = watch(camera)
+    """What it does otherwise than asked it has said when it was opened; what goes wrong later is no setting."""
     yield from (warning("camera settings", note.message, CORRECT) for note in camera.take_notes())
+    frames = watch(camera)
+    yield from (warning("camera trouble", note.message, INSPECT) for note in camera.take_notes())
     if len(frames) < 2:
         found = f"{shown(settings.camera.uri)} delivers no frames"
         yield problem("camera", found, "connect it anew; close other programs")
         return
     yield delivery(frames, settings)
     yield content(frames[-1])
+    yield from calibration.examine(settings, camera.identity)
     yield colour.examine(frames[-1], settings)
 
 

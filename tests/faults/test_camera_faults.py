@@ -4,10 +4,22 @@ from __future__ import annotations
 
 import pytest
 
+from control.arbiter import FRAME_TOO_LATE
 from control.model import Tracking
+from control.safety import Refused
 from control.snapshot import RigState
-from tests.faults.fault_bench import FaultBench
+from server.optics import assumed_model
+from server.settings import RigFile
+from tests.faults.fault_bench import FaultBench, fault_bench
+from tests.faults.invariants import (
+    check_announced,
+    check_limits,
+    check_stays_zero,
+    check_zero,
+    nothing_left_behind,
+)
 from tests.faults.trial import keeps_its_promise
+from vision.simulated.camera import SyntheticCamera
 
 WALKS_ON_OR_IS_HELD = (RigState.RUNNING, ""), (RigState.HELD, "lost"), (RigState.HELD, "frozen")
 """Pictures that are white all over are alike: they count as frozen."""
@@ -32,6 +44,21 @@ def test_late_pictures_hold_the_robot() -> None:
     keeps_its_promise("camera_late")
 
 
+def test_a_picture_steers_for_so_long_after_it_was_taken_and_no_longer(bench: FaultBench) -> None:
+    """Pictures that are late, but not too late, become too old while no others come."""
+    bench.walk()
+    bench.inject("camera_late", extra_ms=80.0)
+    bench.run_for(0.5)
+    assert bench.snapshot.rig is RigState.RUNNING, bench.snapshot.reason
+    bench.inject("camera_unplugged")
+    while bench.snapshot.rig is RigState.RUNNING:
+        frame = bench.loop.parts.perception.frame
+        assert frame is not None
+        assert bench.now - frame.captured_at <= FRAME_TOO_LATE
+        bench.tick()
+    assert bench.snapshot.rig is RigState.HELD
+
+
 def test_a_few_lost_pictures_change_nothing() -> None:
     """When a third of the pictures is lost, the robot walks on."""
     keeps_its_promise("camera_drops")
@@ -46,6 +73,33 @@ def test_a_mirrored_picture_holds_the_robot() -> None:
 def test_pictures_of_another_size_disarm() -> None:
     """When the camera suddenly sends pictures of another size, the rig disarms and names both sizes."""
     keeps_its_promise("camera_cropped")
+
+
+def test_another_camera_than_the_calibrated_one_disarms() -> None:
+    """When another camera takes the place of the one that was calibrated, the rig disarms and names both."""
+    lens = assumed_model(RigFile().camera)
+    section = {
+        "identity": "simulated camera", "date": "2026-01-01 10:00:00", "size_px": list(lens.size), "fx": lens.fx,
+        "fy": lens.fy, "cx": lens.cx, "cy": lens.cy, "distortion": list(lens.distortion), "residual_px": 0.05,
+    }  # fmt: skip
+    calibrated = RigFile.model_validate({"camera": {"lens": section}}).with_simulation(seed=3)
+    with nothing_left_behind(), fault_bench(calibrated) as bench:
+        bench.walk()
+        camera = bench.machine.camera
+        assert isinstance(camera, SyntheticCamera)
+        before, exchanged = bench.now, bench.board.milliseconds
+        camera.identity = "usb 046d:0825 ABC123"
+        bench.run_for(1.0)
+        assert bench.snapshot.rig is RigState.DISARMED, bench.snapshot.reason
+        assert '"usb 046d:0825 ABC123"' in bench.snapshot.reason
+        assert '"simulated camera"' in bench.snapshot.reason
+        check_stays_zero(bench.trace, check_zero(bench.trace, bench.electrics, exchanged))
+        check_limits(bench.trace.samples, bench.electrics)
+        check_announced(bench.trace, "calibration", before)
+        with pytest.raises(Refused, match="calibrated for another camera"):
+            bench.arm_now()
+        camera.identity = "simulated camera"
+        bench.go_on()
 
 
 def test_pictures_without_a_time_hold_the_robot() -> None:

@@ -1,6 +1,7 @@
 """Star and latency over REST: a run of the loop like any other, whose figures are saved when the rig is disarmed."""
 
 import asyncio
+import contextlib
 from pathlib import Path
 
 import httpx
@@ -53,22 +54,28 @@ class Bench:
         )
 
 
-@pytest.fixture
-async def bench(serve, tmp_path: Path):
-    path = tmp_path / "rig.toml"
-    path.write_text(RIG)
+@contextlib.asynccontextmanager
+async def served_rig(serve, path: Path, as_run=lambda settings: settings):
     store = RigStore(path)
 
     def build(settings: RigFile):
         return build_machine(settings, realtime=False)
 
-    rig = Rig(build(store.settings), build)
-    changes = RigChanges(rig, store, lambda settings: settings)
+    rig = Rig(build(as_run(store.settings)), build)
+    changes = RigChanges(rig, store, as_run)
     async with (
         serve(create_app(rig, changes=changes)) as at,
         httpx.AsyncClient(base_url=at.url + "/api/v1", timeout=PATIENCE) as api,
     ):
         yield Bench(rig, path, api)
+
+
+@pytest.fixture
+async def bench(serve, tmp_path: Path):
+    path = tmp_path / "rig.toml"
+    path.write_text(RIG)
+    async with served_rig(serve, path) as one:
+        yield one
 
 
 async def test_the_latency_is_measured_shown_and_saved_when_the_rig_is_disarmed(bench):
@@ -97,6 +104,42 @@ async def test_the_latency_is_measured_shown_and_saved_when_the_rig_is_disarmed(
     assert tick["camera"]["latency_ms"] == pytest.approx(saved["in_use"]["latency_ms"], abs=1.0)
 
 
+async def measured(bench, kind: str, **body):
+    await bench.armed()
+    await bench.post(f"/calibration/{kind}", 202, **body)
+    done = await bench.ended(kind)
+    assert done["stage"] == "done", done
+    await bench.post("/disarm")
+    return done
+
+
+async def test_a_latency_that_was_measured_on_another_camera_is_not_saved(bench):
+    await measured(bench, "latency", **SHORT_WIGGLE)
+    await bench.api.patch("/rig", json={"camera": {"exposure_ms": 8.0}, "robot": {"lift_ratio": 3.3}})
+    refused = await bench.post("/calibration/latency/save", 409)
+    assert refused["detail"].startswith("camera.exposure_ms changed since")
+    assert "latency" not in bench.path.read_text()
+    await bench.api.post("/rig/undo")
+    assert (await bench.post("/calibration/latency/save"))["saved"]
+    saved = bench.path.read_text()
+    await bench.post("/rig/undo")
+    assert bench.rig.settings.camera.latency_ms == 0.0
+    await bench.post("/rig/undo")
+    assert bench.path.read_text() == saved
+    await bench.post("/calibration/latency/save")
+    assert bench.path.read_text() == saved
+
+
+async def test_what_a_simulation_shows_is_not_saved_as_a_real_rig_s(serve, tmp_path: Path):
+    path = tmp_path / "rig.toml"
+    path.write_text(RIG + '[camera]\nuri = "v4l://0"\n[link]\nport = "/dev/ttyACM0"\n')
+    async with served_rig(serve, path, RigFile.as_simulated) as bench:
+        before = path.read_text()
+        await measured(bench, "latency", **SHORT_WIGGLE)
+        assert "--sim" in (await bench.post("/calibration/latency/save", 409))["detail"]
+        assert path.read_text() == before
+
+
 async def test_the_star_gives_the_gait_s_figures_and_saves_them(bench):
     await bench.api.patch("/rig", json={"simulation": {"stamps": "capture"}})
     await bench.armed()
@@ -112,6 +155,10 @@ async def test_the_star_gives_the_gait_s_figures_and_saves_them(bench):
     assert saved["saved"]
     assert saved["in_use"]["length_mm"] == load_rig_file(bench.path).robot.length_mm
     assert saved["in_use"]["source"].startswith("measured 20")
+    await bench.post("/rig/undo")
+    undone = await bench.get("/calibration/star")
+    assert (undone["saved"], undone["in_use"]["source"]) == (False, "not measured")
+    assert (await bench.post("/calibration/star/save"))["saved"], "what was undone can be saved again"
 
 
 async def test_a_star_that_loses_the_robot_says_that_the_camera_s_latency_comes_first(bench):

@@ -217,6 +217,17 @@ def test_a_camera_that_gives_less_than_was_asked_or_nothing_to_see_is_noticed(
     assert real.examined()["picture"]["level"] == "warning"
 
 
+def test_a_damaged_recording_is_no_question_of_settings(real: RealEnough, tmp_path: Path) -> None:
+    for number in range(60):
+        cv2.imwrite(str(tmp_path / f"{number}.png"), np.full((64, 64, 3), 60, np.uint8))
+    (tmp_path / "5.png").write_text("no picture")
+    text = real.rig_file.read_text()
+    real.rig_file.write_text(text.replace(f"file://{tmp_path}/robot.avi", f"folder://{tmp_path}"))
+    found = real.examined()
+    assert "1 of its pictures could not be used" in found["camera trouble"]["finding"]
+    assert "camera settings" not in found.checks
+
+
 def test_the_traffic_log_of_a_rig_that_runs_is_left_alone(
     rig_file: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

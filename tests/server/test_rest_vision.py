@@ -32,8 +32,8 @@ COMMENTED = "[vision]\nvalue = [60, 255]   # a red robot\n"
 class Bench:
     """A served rig with its file."""
 
-    def __init__(self, at, rig: Rig, path: Path) -> None:
-        self.rig, self.path = rig, path
+    def __init__(self, at, rig: Rig, store: RigStore) -> None:
+        self.rig, self.store, self.path = rig, store, store.path
         self.api = httpx.AsyncClient(base_url=at.url + "/api/v1", timeout=PATIENCE)
 
     async def get(self, what: str):
@@ -58,17 +58,26 @@ class Bench:
     async def change(self, **changes) -> httpx.Response:
         return await self.api.patch("/vision", json=changes)
 
+    def in_use(self) -> dict:
+        """The colours that the tracker itself has."""
+        colour = self.rig.machine.tracker._settings.colour
+        return {
+            "hue_deg": list(colour.hue),
+            "saturation": list(colour.saturation),
+            "value": list(colour.value),
+        }
+
     def on_disk(self) -> dict:
         return tomllib.loads(self.path.read_text())["vision"]
 
 
 @contextlib.asynccontextmanager
-async def bench(serve, path: Path):
-    store = RigStore(path)
+async def bench(serve, path: Path, make=RigStore):
+    store = make(path)
     rig = Rig(build_machine(store.settings, realtime=True))
     changes = RigChanges(rig, store, lambda settings: settings)
     async with serve(create_app(rig, changes=changes)) as at:
-        one = Bench(at, rig, path)
+        one = Bench(at, rig, store)
         async with one.api:
             yield one
 
@@ -114,6 +123,16 @@ async def test_a_click_on_the_robot_proposes_its_colour_and_changes_nothing(here
     assert left < u < right
     assert top < v < bottom
     assert await here.get("/rig") == before
+
+
+async def test_however_many_click_one_click_at_a_time_is_looked_at(here):
+    u, v = await here.robot_px()
+    clicks = (here.api.post("/vision/pick", json={"u": u, "v": v}) for _ in range(6))
+    statuses = sorted([answer.status_code for answer in await asyncio.gather(*clicks)])
+    assert statuses[0] == 200
+    assert 409 in statuses
+    assert set(statuses) == {200, 409}
+    assert (await here.api.post("/vision/pick", json={"u": u, "v": v})).status_code == 200
 
 
 async def test_the_proposed_mask_is_a_picture_of_the_cameras_size_that_shows_the_robot_alone(here):
@@ -213,6 +232,27 @@ async def test_a_profile_needs_a_name_that_is_new_and_plain(here):
     assert (await here.change(profile="night")).status_code == 422
     assert (await here.api.delete("/vision/profiles/night")).status_code == 404
     assert (await here.api.delete("/vision/profiles/default")).status_code == 409
+    refused = await here.api.post("/vision/profiles", json={"name": "lamp "})
+    assert refused.status_code == 422
+    assert "1 to 40 letters" in refused.json()["detail"]
+
+
+async def test_of_two_who_save_a_profile_under_one_name_at_once_one_is_refused(here):
+    await here.ready()
+    body = {"name": "day"}
+    answers = await asyncio.gather(*(here.api.post("/vision/profiles", json=body) for _ in range(2)))
+    assert sorted(answer.status_code for answer in answers) == [201, 409]
+
+
+async def test_a_profile_saved_and_a_change_of_colours_at_once_both_count(here):
+    await here.ready()
+    _, saved = await asyncio.gather(
+        here.change(colour=BLUE), here.api.post("/vision/profiles", json={"name": "day"})
+    )
+    assert saved.status_code == 201
+    assert here.on_disk()["profiles"]["day"]["hue_deg"] == BLUE["hue_deg"]
+    now = await here.get("/vision")
+    assert (now["profile"], now["colour"]) == ("day", BLUE)
 
 
 async def test_an_end_mark_has_colours_of_its_own_in_each_profile(here):
@@ -308,6 +348,49 @@ async def test_colours_that_cannot_be_saved_are_not_used_either(here):
     assert (await here.get("/vision"))["colour"] == RED
     assert here.path.read_text() == COMMENTED
     await here.ready()
+
+
+class Meanwhile(RigStore):
+    """A rig file during whose saving something else happens."""
+
+    event = staticmethod(lambda: None)
+
+    def commit(self, staged, plan) -> None:
+        self.event()
+        super().commit(staged, plan)
+
+
+async def test_a_rig_armed_while_its_colours_could_not_be_saved_says_that_they_are_not_in_the_file(
+    serve, tmp_path
+):
+    async with bench(serve, tmp_path / "rig.toml", Meanwhile) as one:
+        (previous_of(one.path) / "in the way").mkdir(parents=True)
+        await one.ready()
+        loop = asyncio.get_running_loop()
+        one.store.event = lambda: asyncio.run_coroutine_threadsafe(one.rig.arm(), loop).result(PATIENCE)
+        wider = {**RED, "value": [50, 255]}
+        refused = await one.change(colour=wider)
+        assert refused.status_code == 409
+        assert "values that are not in its file" in refused.json()["detail"]
+        assert (await one.get("/vision"))["colour"] == wider == one.in_use()
+        one.store.event = lambda: None
+        await one.api.post("/disarm")
+        previous_of(one.path).joinpath("in the way").rmdir()
+        previous_of(one.path).rmdir()
+        assert (await one.change(colour=wider)).status_code == 200
+        assert load_rig_file(one.path) == one.rig.settings
+
+
+async def test_an_edit_on_the_disk_while_a_change_is_made_is_not_overwritten(serve, tmp_path):
+    edited = "# my own hand\n[vision]\nvalue = [70, 255]\n"
+    async with bench(serve, tmp_path / "rig.toml", Meanwhile) as one:
+        await one.ready()
+        one.store.event = lambda: one.path.write_text(edited)
+        refused = await one.change(colour=BLUE)
+        assert refused.status_code == 409
+        assert "reload it first" in refused.json()["detail"]
+        assert one.path.read_text() == edited
+        assert (await one.get("/vision"))["colour"] == RED == one.in_use()
 
 
 async def test_an_edit_of_the_colours_on_the_disk_is_taken_without_a_new_machine(here):

@@ -187,10 +187,18 @@ async def test_the_change_before_comes_back_by_undo_and_goes_again_by_another(he
         assert load_rig_file(here.path).limits.field_mT == field
 
 
-async def test_undo_without_a_previous_file_says_so(here):
+async def test_undo_before_anything_was_saved_says_so(here):
     answer = await here.api.post("/rig/undo")
     assert answer.status_code == 409
-    assert "rig.toml.previous: No such file" in answer.json()["detail"]
+    assert "there is nothing to undo" in answer.json()["detail"]
+
+
+async def test_the_very_first_save_can_be_undone(here):
+    field = here.rig.settings.limits.field_mT
+    assert (await here.patch({"limits": {"field_mT": 12.0}})).json()["file"]["previous"]
+    assert (await here.api.post("/rig/undo")).json()["limits"]["field_mT"] == field
+    assert load_rig_file(here.path) == here.rig.settings == RigFile()
+    assert (await here.api.post("/rig/undo")).json()["limits"]["field_mT"] == 12.0
 
 
 async def test_a_camera_that_cannot_be_opened_leaves_the_rig_as_it_was(here):

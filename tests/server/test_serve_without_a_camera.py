@@ -26,21 +26,28 @@ def camera_on(address: str = "http://127.0.0.1:0", rate: float = 30.0) -> Iterat
         yield where
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def address() -> str:
     """Of a camera that has been switched off again."""
     with camera_on() as where:
         return where
 
 
-@contextmanager
-def rig_with(folder: Path, address: str) -> Iterator[Path]:
-    """The rig file of a rig with this camera."""
-    with real_rig(folder) as rig_file:
-        text = rig_file.read_text().replace("size_px = [64, 64]", "size_px = [80, 64]")
+@pytest.fixture(scope="module")
+def rig_file(tmp_path_factory: pytest.TempPathFactory, address: str) -> Iterator[Path]:
+    """Of a rig with this camera."""
+    with real_rig(tmp_path_factory.mktemp("rig")) as path:
+        text = path.read_text().replace("size_px = [64, 64]", "size_px = [80, 64]")
         film = text.split('uri = "')[1].split('"')[0]
-        rig_file.write_text(text.replace(film, address.replace("//", f"//{LOGIN}@")))
-        yield rig_file
+        path.write_text(text.replace(film, address.replace("//", f"//{LOGIN}@")))
+        yield path
+
+
+@pytest.fixture(scope="module")
+def server(tmp_path_factory: pytest.TempPathFactory, rig_file: Path) -> Iterator[Server]:
+    """Of that rig; started while the camera is off."""
+    with served(tmp_path_factory.mktemp("data"), "--rig", str(rig_file)) as server:
+        yield server
 
 
 def camera_fault(server: Server, words: str) -> dict[str, Any]:
@@ -54,39 +61,36 @@ def told(server: Server, words: str) -> bool:
     return any(words in event["message"] for event in server.get("/events")["events"])
 
 
-def test_a_camera_that_is_off_is_waited_for_and_arms_nothing(tmp_path: Path, address: str) -> None:
-    """Off: the page opens and says so. On: pictures come. Off again: missed at once, and nothing arms by itself."""
-    with rig_with(tmp_path, address) as rig_file, served(tmp_path / "data", "--rig", str(rig_file)) as server:
-        state = camera_fault(server, "does not answer with a video stream")
-        assert state["rig"] == "disarmed"
-        with pytest.raises(ServerRefused, match="409"):
-            server.post("/arm", {"consent": True})
-        with camera_on(address):
-            state = server.until(lambda state: "camera" not in [fault["code"] for fault in state["faults"]])
-            assert state["rig"] == "disarmed"
-            assert server.get("/cameras")[0]["identity"] == address
-        assert camera_fault(server, "does not answer")["rig"] == "disarmed"
-        poll(lambda: told(server, "has broken off"), bool)
-        assert told(server, "is there")
-
-
-def test_nobody_is_shown_the_camera_s_login(tmp_path: Path, address: str) -> None:
-    """Not in the values, the state, the list of cameras or the event log; and values that come back as they were
-    shown change nothing."""
-    with rig_with(tmp_path, address) as rig_file, served(tmp_path / "data", "--rig", str(rig_file)) as server:
-        camera_fault(server, "does not answer")
-        seen = [server.get(path) for path in ("/rig", "/state", "/cameras", "/events")]
-        assert "s3cret" not in str(seen)
-        shown = server.get("/rig")["camera"]
-        assert "***@" in shown["uri"]
-        answer = server.send("PATCH", "/rig", {"camera": {"uri": shown["uri"]}, "name": "Bench 4"})
-        assert answer["changed"] == ["name"]
-        assert f"{LOGIN}@" in rig_file.read_text()
-
-
-def test_a_headless_run_needs_its_camera(tmp_path: Path, address: str) -> None:
-    with rig_with(tmp_path, address) as rig_file:
-        answer = CliRunner().invoke(app, ["run", "--rig", str(rig_file), "--yes"])
+def test_a_headless_run_needs_its_camera(rig_file: Path) -> None:
+    answer = CliRunner().invoke(app, ["run", "--rig", str(rig_file), "--yes"])
     assert answer.exit_code != 0
     assert "does not answer with a video stream" in answer.output
     assert "s3cret" not in answer.output
+
+
+def test_a_camera_that_is_off_is_waited_for_and_arms_nothing(server: Server, address: str) -> None:
+    """Off: the page opens and says so. On: pictures come. Off again: missed at once, and nothing arms by itself."""
+    state = camera_fault(server, "does not answer with a video stream")
+    assert state["rig"] == "disarmed"
+    with pytest.raises(ServerRefused, match="409"):
+        server.post("/arm", {"consent": True})
+    with camera_on(address):
+        state = server.until(lambda state: "camera" not in [fault["code"] for fault in state["faults"]])
+        assert state["rig"] == "disarmed"
+        assert server.get("/cameras")[0]["identity"] == address
+    assert camera_fault(server, "does not answer")["rig"] == "disarmed"
+    poll(lambda: told(server, "has broken off"), bool)
+    assert told(server, "is there")
+
+
+def test_nobody_is_shown_the_camera_s_login(server: Server, rig_file: Path) -> None:
+    """Not in the values, the state, the list of cameras or the event log; and values that come back as they were
+    shown change nothing."""
+    camera_fault(server, "does not answer")
+    seen = [server.get(path) for path in ("/rig", "/state", "/cameras", "/events")]
+    assert "s3cret" not in str(seen)
+    shown = server.get("/rig")["camera"]
+    assert "***@" in shown["uri"]
+    answer = server.send("PATCH", "/rig", {"camera": {"uri": shown["uri"]}, "name": "Bench 4"})
+    assert answer["changed"] == ["name"]
+    assert f"{LOGIN}@" in rig_file.read_text()

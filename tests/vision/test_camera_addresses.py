@@ -91,7 +91,9 @@ def test_every_name_of_a_file_can_be_written_as_a_uri(name: str) -> None:
         ("rtsp://me:pw@10.0.0.2:554/live", "rtsp://***@10.0.0.2:554/live"),
         ("rtsp://me@10.0.0.2/live", "rtsp://***@10.0.0.2/live"),
         ("http://10.0.0.2/video?user=me&pwd=p@w&size=2", "http://10.0.0.2/video?user=***&pwd=***&size=2"),
-        ("https://cam.lab/x?a=1", "https://cam.lab/x?a=1"),
+        ("rtsp://dvr/user=me&password=p_w&channel=1.sdp", "rtsp://dvr/user=***&password=***&channel=1.sdp"),
+        ("rtsp://dvr/User=me_Password=p_w_channel=1.sdp?real", "rtsp://dvr/User=***?real"),
+        ("https://cam.lab/monkey=1/x?a=1", "https://cam.lab/monkey=1/x?a=1"),
         ("RTSP://me:p/w@host/x", "RTSP://***@host/x"),
         ("http://me:p?w@host/x", "http://***@host/x"),
         ("file:///home/me@work/x.mp4", "file:///home/me@work/x.mp4"),
@@ -105,3 +107,6 @@ def test_what_is_shown_of_a_uri_has_no_login(uri: str, public_uri: str) -> None:
 def test_a_network_camera_is_the_same_whoever_logs_in() -> None:
     for login in ("", "me:pw@", "you:other@"):
         assert public(f"rtsp://{login}cam.lab/live?stream=1&pwd=x") == "rtsp://cam.lab/live?stream=1"
+    assert public("rtsp://dvr/user=me&password=x&channel=1") == public(
+        "rtsp://dvr/user=you&password=y&channel=1"
+    )

@@ -14,7 +14,7 @@ from control.model import PIVOT_A, Body, Expectation, Frame, Pose, Tracking, opp
 from vision.camera_model import CameraModel
 from vision.simulated.rendering import Painter, SceneSettings
 from vision.tracking.detection import Window, find
-from vision.tracking.picking import PickError, Proposal, Sight, pick
+from vision.tracking.picking import Part, PickError, Proposal, Sight, pick
 from vision.tracking.tracker import ColourTracker, TrackerSettings
 
 Colour = tuple[float, float, float]
@@ -207,6 +207,14 @@ def test_a_click_beside_the_robot_is_refused_with_what_to_do(what: str):
     with pytest.raises(PickError, match=words) as refusal:
         pick(seen(image), OPTICS.to_pixel(*place, 0.0))
     assert "click" in str(refusal.value)
+
+
+@pytest.mark.parametrize("part", ["body", "end_mark"])
+def test_a_piece_of_the_plate_that_a_line_encloses_is_no_robot(part: Part):
+    image = np.full((480, 640, 3), (198, 207, 24), np.uint8)
+    cv2.rectangle(image, (15, 240), (380, 452), (85, 240, 215), 2)
+    with pytest.raises(PickError, match="same colour"):
+        pick(Sight(image, OPTICS, HEIGHT, 0.1), (121, 263), part)
 
 
 @pytest.mark.parametrize(

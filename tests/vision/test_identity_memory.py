@@ -179,3 +179,25 @@ def test_other_colours_are_used_at_once_and_the_robots_place_stays_known():
     green = replace(TrackerSettings(), colour=replace(TrackerSettings().colour, hue=(100, 140)))
     watching.tracker.retune(green)
     assert watching.sees(ROBOT, count=3).measurement is None
+
+
+def along(distance: float) -> Body:
+    """A robot like the first one, so far (m) ahead of it along its axis."""
+    heading = ROBOT.pose.heading
+    return replace(ROBOT, pose=Pose(-distance * math.sin(heading), distance * math.cos(heading), heading))
+
+
+@pytest.mark.parametrize("which", [0, 1])
+def test_a_robot_that_is_pointed_to_while_another_one_touches_it_is_the_one_when_they_part(which: int):
+    """The blob of both has a middle that is neither's."""
+
+    def show(*bodies: Body, times: range) -> list[Observation]:
+        one, other = (PAINTER.paint(body, 0) for body in bodies)
+        image = np.minimum(one, other)
+        return [watching.tracker.update(Frame(image, index / RATE, index), None) for index in times]
+
+    watching = Watching()
+    touching, parted = (ROBOT, along(0.0097)), (ROBOT, along(0.0115))
+    watching.tracker.follow(*place_of(touching[which]))
+    assert all(each.measurement is None for each in show(*touching, times=range(5)))
+    assert is_at(show(*parted, times=range(5, 8))[-1], parted[which])

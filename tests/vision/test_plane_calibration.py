@@ -196,6 +196,35 @@ def test_marks_that_make_no_plane_are_refused_with_words():
         plane_from_marks(Lens.of(MILD), MILD.to_image(CORNERS), swapped, HALF)
 
 
+def test_a_line_of_marks_and_one_beside_it_are_refused_for_they_fit_two_cameras():
+    places = np.array([(-0.05, 0.0), (-0.02, 0.0), (0.02, 0.0), (0.05, 0.0), (0.0, 0.05)])
+    for marks in (places, places[[0, 2, 3, 4]]):
+        with pytest.raises(CalibrationError, match=f"all points but number {len(marks)} are on one line"):
+            plane_from_marks(Lens.of(MILD), clicked(marks, MILD, CLICK, 1), marks, HALF)
+    enough = np.vstack([places, [(0.0, -0.05)]])
+    plane_from_marks(Lens.of(MILD), clicked(enough, MILD, CLICK, 1), enough, HALF)
+
+
+def test_marks_without_any_noise_are_no_suspects():
+    places = np.array([(-0.05, -0.05), (0.05, -0.05), (0.05, 0.05), (-0.05, 0.05)] * 2)
+    assert plane_from_marks(Lens.of(MILD), clicked(places, MILD, 0.0, 1), places, HALF).remarks == ()
+
+
+def test_whatever_is_clicked_gives_a_plane_or_words(full: bool):
+    chance = np.random.default_rng(5)
+    for _ in range(400 if full else 60):
+        count = int(chance.integers(4, 9))
+        pixels = chance.uniform(-1e4, 1e4, (count, 2)), 200.0 * chance.integers(0, 3, (count, 2))
+        places = chance.uniform(-2.0, 2.0, (count, 2)), chance.integers(-1, 2, (count, 2)) * 1e-6
+        for seen, known in itertools.product(pixels, places):
+            try:
+                fit = plane_from_marks(Lens.of(STRONG), seen.astype(float), known, HALF)
+            except CalibrationError:
+                continue
+            assert math.isfinite(fit.residual)
+            assert np.isfinite(fit.model.to_image(np.array([(0.0, 0.0), (HALF, HALF)]))).all()
+
+
 def test_arrays_in_any_layout_give_the_same_plane():
     table = np.column_stack([MILD.to_image(CORNERS), CORNERS])
     one = plane_from_marks(Lens.of(MILD), table[:, :2], table[:, 2:], HALF)

@@ -1,4 +1,4 @@
-"""Video files and folders of pictures, played as if they were a camera; damaged ones, too."""
+"""Video files, played as if they were a camera; damaged ones, too."""
 
 from __future__ import annotations
 
@@ -12,15 +12,10 @@ import numpy as np
 import pytest
 
 from control.model import Frame
-from vision.sources.image_folder import natural_order
-from vision.sources.opening import Camera, CameraError, open_camera
+from tests.vision.films import PATIENCE, SIZE, STEP, greys, played_fast
+from vision.sources.opening import CameraError, open_camera
 
-SIZE = (64, 48)
 RATE = 25.0
-STEP = 20
-"""Of grey between two frames of the short film."""
-PATIENCE = 0.05
-"""Longer than from frame to frame, s; at its end a film that is played fast lets this time pass, too."""
 
 
 @pytest.fixture
@@ -32,10 +27,6 @@ def video(tmp_path: Path) -> Path:
         writer.write(np.full((SIZE[1], SIZE[0], 3), STEP * index, np.uint8))
     writer.release()
     return path
-
-
-def greys(frames: list[Frame]) -> list[int]:
-    return [round(float(frame.image.mean()) / STEP) for frame in frames]
 
 
 def test_a_file_plays_at_its_own_pace_then_gives_nothing(video: Path) -> None:
@@ -96,10 +87,41 @@ def test_a_film_in_a_loop_begins_again_and_its_time_goes_on(video: Path) -> None
     assert steps == pytest.approx([1 / RATE] * 24)
 
 
-def played_fast(camera: Camera, attempts: int) -> list[Frame]:
-    frames = [frame for _ in range(attempts) if (frame := camera.read(PATIENCE)) is not None]
+def test_a_film_that_cannot_be_opened_again_ends_and_says_why(video: Path) -> None:
+    camera = open_camera(f"{video.as_uri()}?pace=fast&loop=1")
+    camera.read(PATIENCE)
+    video.unlink()
+    frames = played_fast(camera, 15)
+    assert greys(frames) == list(range(1, 10))
+    assert "is missing" in camera.trouble
+
+
+def test_a_film_that_is_over_says_so(video: Path) -> None:
+    camera = open_camera(f"{video.as_uri()}?pace=fast")
+    assert camera.trouble == ""
+    played_fast(camera, 12)
+    assert camera.trouble == f"video file {video} has ended"
+
+
+def test_a_film_that_is_decoded_slower_than_it_goes_keeps_nobody_waiting(tmp_path: Path) -> None:
+    """It falls behind its own pace and goes on from there, instead of being sought for longer and longer."""
+    path = tmp_path / "large.avi"
+    writer = cv2.VideoWriter(str(path), cv2.VideoWriter.fourcc(*"MJPG"), 5000.0, (640, 480))
+    noise = np.random.default_rng(5).integers(0, 255, (480, 640, 3)).astype(np.uint8)
+    for _ in range(60):
+        writer.write(noise)
+    writer.release()
+    camera = open_camera(f"{path.as_uri()}?loop=1")
+    end = time.monotonic() + 1.5
+    frames = []
+    while time.monotonic() < end:
+        begin = time.monotonic()
+        frames.append(camera.read(0.1))
+        assert time.monotonic() - begin < 0.5
     camera.close()
-    return frames
+    times = [frame.captured_at for frame in frames if frame is not None]
+    assert len(times) >= 5
+    assert times == sorted(set(times))
 
 
 def test_a_film_may_be_closed_while_somebody_waits_for_its_next_frame(video: Path) -> None:
@@ -208,73 +230,3 @@ def test_decoders_say_nothing_to_the_terminal(tmp_path: Path, capfd: pytest.Capt
     with pytest.raises(CameraError):
         open_camera((tmp_path / "text.mp4").as_uri())
     assert capfd.readouterr() == ("", "")
-
-
-# Folders ----------------------------------------------------------------------------------------
-
-
-def shade(path: Path, grey: int, size: tuple[int, int] = SIZE) -> None:
-    cv2.imwrite(str(path), np.full((size[1], size[0], 3), grey, np.uint8))
-
-
-@pytest.fixture
-def folder(tmp_path: Path) -> Path:
-    """Twelve pictures whose numbers have no leading zeros."""
-    for index in range(12):
-        shade(tmp_path / f"Picture {index}.png", STEP * index)
-    (tmp_path / "notes.txt").write_text("not a picture")
-    return tmp_path
-
-
-def test_the_pictures_of_a_folder_come_in_the_order_of_their_numbers(folder: Path) -> None:
-    camera = open_camera(f"folder://{folder}?rate=50&pace=fast")
-    assert (camera.size, camera.rate, camera.identity) == (SIZE, 50.0, f"folder {folder.name}")
-    frames = played_fast(camera, 20)
-    assert greys(frames) == list(range(12))
-    assert frames[-1].captured_at - frames[0].captured_at == pytest.approx(11 / 50)
-
-
-def test_a_folder_plays_at_the_rate_that_was_asked(folder: Path) -> None:
-    camera = open_camera(f"folder://{folder}?rate=100")
-    begin = time.monotonic()
-    frames = [camera.read(0.5) for _ in range(8)]
-    camera.close()
-    assert 0.05 <= time.monotonic() - begin < 0.4
-    assert all(frame is not None for frame in frames)
-
-
-@pytest.mark.parametrize("suffix", [".jpg", ".png"])
-def test_one_broken_picture_is_left_out_and_told(folder: Path, suffix: str) -> None:
-    """Text, half a picture and an empty file among good ones; a decoder would fill half a picture up with grey."""
-    whole = cv2.imencode(suffix, np.random.default_rng(4).integers(0, 255, (48, 64, 3), np.uint8))[
-        1
-    ].tobytes()
-    (folder / f"Picture 3.5{suffix}").write_bytes(whole[: len(whole) // 2])
-    (folder / f"Picture 4.5{suffix}").write_text("no picture")
-    (folder / f"Picture 5.5{suffix}").write_bytes(b"")
-    camera = open_camera(f"folder://{folder}?loop=0&pace=fast")
-    frames = [camera.read(PATIENCE) for _ in range(15)]
-    notes = [note.message for note in camera.take_notes()]
-    camera.close()
-    assert greys([frame for frame in frames if frame is not None]) == list(range(12))
-    assert "3 of its pictures could not be used" in notes[-1]
-
-
-def test_a_picture_of_another_size_is_left_out(folder: Path) -> None:
-    shade(folder / "Picture 2.5.png", 255, (32, 32))
-    assert greys(played_fast(open_camera(f"folder://{folder}?pace=fast"), 20)) == list(range(12))
-
-
-def test_a_folder_without_pictures_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(CameraError, match="holds no pictures; understood are"):
-        open_camera(f"folder://{tmp_path}")
-    (tmp_path / "a.png").write_text("no picture")
-    with pytest.raises(CameraError, match="none of them can be read"):
-        open_camera(f"folder://{tmp_path}")
-    with pytest.raises(CameraError, match="cannot be read"):
-        open_camera(f"folder://{tmp_path}/nowhere")
-
-
-def test_numbers_in_names_count_as_numbers() -> None:
-    names = ["b1", "a10", "a9", "a", "a9b", "10", "9", ""]
-    assert sorted(names, key=natural_order) == ["", "9", "10", "a", "a9", "a9b", "a10", "b1"]

@@ -16,7 +16,7 @@ import pytest
 
 from tests.vision.camera_watch import Watch, watched
 from vision.sources.live import CLOSING_TIME
-from vision.sources.v4l import capture_time, pixel_format
+from vision.sources.v4l import DriverClock, pixel_format
 from vision.sources.v4l_ioctl import Mode
 
 URI = "v4l:///dev/full"
@@ -80,6 +80,15 @@ def test_a_frame_bears_the_time_at_which_the_driver_took_it(driver: Driver) -> N
         assert 0.040 <= statistics.median(ages) <= 0.060
 
 
+def test_a_picture_that_has_lain_in_the_driver_for_seconds_is_as_old_as_it_is(driver: Driver) -> None:
+    """As after a standstill of the program, in which nobody emptied the buffers: not taken for a new one."""
+    with driver.watched(Behaviour()) as watch:
+        watch.frames(3)
+        driver.behave(Behaviour(clock=3))
+        ages = [frame["at"] - frame["captured_at"] for frame in watch.frames(10)[5:]]
+        assert all(3.0 <= age <= 3.5 for age in ages)
+
+
 @pytest.mark.parametrize("clock", [1, 2])
 def test_a_driver_with_another_clock_is_not_believed(driver: Driver, clock: int) -> None:
     """The time of day, and no time at all: the frame's time is then that of its arrival."""
@@ -124,6 +133,14 @@ def test_a_camera_that_comes_back_with_another_size_is_named_and_not_used(driver
 def test_a_camera_that_is_missing_at_the_start_is_found_when_it_is_plugged_in(driver: Driver) -> None:
     with driver.watched(Behaviour(present=0)) as watch:
         watch.trouble("is not plugged in")
+        driver.behave(Behaviour())
+        watch.frame()
+
+
+def test_a_camera_that_fails_in_an_unforeseen_way_is_tried_again(driver: Driver) -> None:
+    """Its driver lets OpenCV in, and then nobody who asks for its settings."""
+    with driver.watched(Behaviour(present=2)) as watch:
+        watch.trouble("Device or resource busy")
         driver.behave(Behaviour())
         watch.frame()
 
@@ -177,7 +194,7 @@ def test_a_setting_that_the_camera_does_not_have_is_said_to_be_missing(driver: D
 def test_a_stamp_counts_only_where_it_can_be_true(
     stamp: float, grabbed_at: float, captured_at: float
 ) -> None:
-    assert capture_time(stamp, grabbed_at) == captured_at
+    assert DriverClock().capture_time(stamp, grabbed_at) == captured_at
 
 
 def test_raw_pictures_are_taken_where_they_are_fast_enough() -> None:

@@ -21,12 +21,12 @@
 #define MOST_DESCRIPTORS 1024
 
 struct Behaviour {
-    int32_t present;      /* 0: unplugged */
+    int32_t present;      /* 0: unplugged; 2: may be opened once at a time */
     int32_t hangs;        /* 1: whoever waits for a picture waits for ever */
     int32_t width;        /* the only size that it offers, px */
     int32_t height;
     int32_t rate;         /* the only rate, frames/s */
-    int32_t clock;        /* stamps: 0 monotonic, 1 the time of day, 2 none */
+    int32_t clock;        /* stamps: 0 monotonic, 1 the time of day, 2 none, 3 monotonic of 3 s ago */
     int32_t age_ms;       /* pictures have waited for so long before they can be had */
     int32_t longest_exposure; /* in 100 us; 0: no such control */
 };
@@ -67,6 +67,7 @@ static off_t stride(struct Behaviour is) {
 static int open_device(void) {
     struct Behaviour is = behaviour();
     if (!is.present) return fail(ENODEV);
+    if (is.present == 2 && memchr(ours, 1, sizeof ours)) return fail(EBUSY);
     int memory = memfd_create("v4l", MFD_CLOEXEC);
     if (memory < 0 || ftruncate(memory, BUFFERS * stride(is)) < 0) return -1;
     ours[memory] = 1;
@@ -110,6 +111,7 @@ static int next_picture(int memory, struct v4l2_buffer *buffer) {
     int64_t stamp = started + last_frame * period;
     if (is.clock == 1) stamp += microseconds(CLOCK_REALTIME) - microseconds(CLOCK_MONOTONIC);
     if (is.clock == 2) stamp = 0;
+    if (is.clock == 3) stamp -= 3000000LL;
     buffer->index = index;
     buffer->bytesused = buffer->length = size;
     buffer->flags = V4L2_BUF_FLAG_MAPPED | V4L2_BUF_FLAG_DONE;

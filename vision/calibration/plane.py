@@ -30,8 +30,14 @@ POOREST_BOARD = 1.5
 """The same for the corners of a board, px: it is bent, its squares are of another size, or the lens is another."""
 SURELY_WRONG = 4.0
 """A mark that the others put so many standard deviations elsewhere is named."""
+FINEST = 0.01
+"""Points are never known better than this, px: without noise every difference would be a surely wrong mark."""
 FLATTEST = 0.02
 """Points whose extent across their line is less than this share of that along it are on one line."""
+NO_CAMERA = (
+    "these points fit no camera above the plate: are they in order, clockwise in the picture, and are the measures "
+    "right?"
+)
 
 
 class PlaneSource(StrEnum):
@@ -142,6 +148,7 @@ def _clicked(
 ) -> PlaneFit:
     _require_spread(places, "on the plate")
     _require_spread(pixels, "in the picture")
+    _require_more_than_a_line(places)
     points = np.column_stack([places, np.zeros(len(places))])
     fit = _pose(lens, points, pixels, ENOUGH_FREEDOM)
     residual = _rms(fit.residuals)
@@ -168,9 +175,22 @@ def _require_spread(points: Floats, where: str) -> None:
     """Refuse points that are not finite, or all on one line."""
     if not np.isfinite(points).all():
         raise CalibrationError(f"the points {where} must be finite numbers")
-    along, across = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)[:2]
-    if not (along > 0.0 and across >= FLATTEST * along):
+    if not _is_spread(points):
         raise CalibrationError(f"the points {where} are on one line: spread them over the workspace")
+
+
+def _is_spread(points: Floats) -> bool:
+    along, across = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)[:2]
+    return bool(along > 0.0 and across >= FLATTEST * along)
+
+
+def _require_more_than_a_line(places: Floats) -> None:
+    """Refuse a line and one point beside it: two poses of the camera explain these nearly alike, some mm apart."""
+    for number in range(len(places)):
+        if not _is_spread(np.delete(places, number, axis=0)):
+            raise CalibrationError(
+                f"all points but number {number + 1} are on one line: add another one away from that line"
+            )
 
 
 def _require_size(lens: Lens, size: tuple[int, int]) -> None:
@@ -192,10 +212,7 @@ def _pose(lens: Lens, points: Floats, pixels: Floats, enough: int = 0) -> PoseFi
     fits = [_refined(lens, points, pixels, turn, shift) for turn, shift in starts]
     above = [fit for fit in fits if _is_above(fit[0], fit[1])]
     if not above:
-        raise CalibrationError(
-            "these points fit no camera above the plate: are they in order, clockwise in the picture, and are the "
-            "measures right?"
-        )
+        raise CalibrationError(NO_CAMERA)
     turn, shift, residuals = min(above, key=lambda fit: _rms(fit[2]))
     squares, freedom = float(np.sum(residuals**2)), residuals.size - 6
     assumed = max(enough - freedom, 0)
@@ -205,10 +222,13 @@ def _pose(lens: Lens, points: Floats, pixels: Floats, enough: int = 0) -> PoseFi
 
 def _starts(lens: Lens, flat: Floats, pixels: Floats) -> list[tuple[Floats, Floats]]:
     """Poses to begin with: the two that explain a plane best, and a third, for points whose symmetry leaves these
-    undefined."""
+    undefined. Raises CalibrationError."""
     lens_terms = lens.matrix, lens.coefficients
-    _, turns, shifts, _ = cv2.solvePnPGeneric(flat, pixels, *lens_terms, flags=cv2.SOLVEPNP_IPPE)
-    _, turn, shift = cv2.solvePnP(flat, pixels, *lens_terms, flags=cv2.SOLVEPNP_ITERATIVE)
+    try:
+        _, turns, shifts, _ = cv2.solvePnPGeneric(flat, pixels, *lens_terms, flags=cv2.SOLVEPNP_IPPE)
+        _, turn, shift = cv2.solvePnP(flat, pixels, *lens_terms, flags=cv2.SOLVEPNP_ITERATIVE)
+    except cv2.error as error:
+        raise CalibrationError(NO_CAMERA) from error
     all_three = zip([*turns, turn], [*shifts, shift], strict=True)
     starts = [(np.array(turn, float), np.array(shift, float)) for turn, shift in all_three]
     return [start for start in starts if np.isfinite(start).all()]
@@ -233,23 +253,28 @@ def _suspect(lens: Lens, points: Floats, pixels: Floats) -> str:
     """Names the mark that the others put somewhere else; "" when they agree, or cannot tell."""
     if len(points) <= FEWEST_MARKS:
         return ""
-    left_out = [_left_out(lens, points, pixels, number) for number in range(len(points))]
-    worst = int(np.argmax([away / noise for away, noise, _ in left_out]))
-    away, noise, distance = left_out[worst]
-    if not away > SURELY_WRONG * noise:
+    doubts = [(number, *_left_out(lens, points, pixels, number)) for number in range(len(points))]
+    number, ratio, distance = max(doubts, key=lambda doubt: doubt[1], default=(0, 0.0, 0.0))
+    if not ratio > SURELY_WRONG:
         return ""
-    return f"mark {worst + 1} is {distance * 1e3:.1f} mm from where the others put it: look at it again"
+    return f"mark {number + 1} is {distance * 1e3:.1f} mm from where the others put it: look at it again"
 
 
-def _left_out(lens: Lens, points: Floats, pixels: Floats, number: int) -> tuple[float, float, float]:
-    """How far one mark is from where the others put it, px; their noise, px; and the same distance, m."""
+def _left_out(lens: Lens, points: Floats, pixels: Floats, number: int) -> tuple[float, float]:
+    """How far one mark is from where the others put it, in standard deviations of theirs, and m.
+
+    0 when the others by themselves fit no camera.
+    """
     others = np.arange(len(points)) != number
-    fit = _pose(lens, points[others], pixels[others], ENOUGH_FREEDOM)
+    try:
+        fit = _pose(lens, points[others], pixels[others], ENOUGH_FREEDOM)
+    except CalibrationError:
+        return 0.0, 0.0
     seen, _ = lens.project(points[number : number + 1], fit.turn, fit.shift)
     away = float(np.linalg.norm(pixels[number] - seen[0]))
     x, y, z = points[number].tolist()
     model = camera_model(lens, _triple(fit.turn), _triple(fit.shift))
-    return away, fit.noise, away / model.scale_at(x, y, z)
+    return away / max(fit.noise, FINEST), away / model.scale_at(x, y, z)
 
 
 def _plane(source: PlaneSource, fit: PoseFit, workspace: float, remarks: tuple[str, ...]) -> PlaneFit:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from pathlib import Path
 from urllib.parse import SplitResult, parse_qsl, unquote, urlencode, urlsplit, urlunsplit
@@ -12,7 +13,8 @@ SECRET = "***"
 SECRET_KEYS = frozenset(
     {"password", "passwd", "pass", "pwd", "psw", "user", "usr", "username", "login", "token", "auth", "key"}
 )
-"""Fields of a query that network cameras take a login from."""
+"""Fields that network cameras take a login from: of the query, and some of the path."""
+_LOGIN_IN_PATH = re.compile(rf"(?<![a-z])({'|'.join(sorted(SECRET_KEYS))})=[^&;/]*", re.IGNORECASE)
 NETWORK = frozenset({"rtsp", "rtsps", "http", "https"})
 
 FASTEST_FOLDER = 1000.0
@@ -42,7 +44,8 @@ def split(uri: str) -> SplitResult:
 def shown(uri: str) -> str:
     """The URI as it may be told: neither user nor password of a network camera.
 
-    Examples: ``rtsp://me:pw@host/1`` -> ``rtsp://***@host/1``; ``http://host/v?pwd=x`` -> ``http://host/v?pwd=***``.
+    Examples: ``rtsp://me:pw@host/1`` -> ``rtsp://***@host/1``; ``http://host/v?pwd=x`` -> ``http://host/v?pwd=***``;
+    ``rtsp://host/user=me&password=x&channel=1`` -> ``rtsp://host/user=***&password=***&channel=1``.
     """
     scheme, _, rest = uri.partition("://")
     if scheme.lower() not in NETWORK:
@@ -52,7 +55,12 @@ def shown(uri: str) -> str:
         target, mark, query = rest, "", ""
     login, at, address = target.rpartition("@")  # the last one: a password may have a slash in it
     fields = "&".join(map(_without_value, query.split("&")))
-    return f"{scheme}://{SECRET if login else ''}{at}{address}{mark}{fields}"
+    return f"{scheme}://{SECRET if login else ''}{at}{_without_login(address)}{mark}{fields}"
+
+
+def _without_login(path: str) -> str:
+    """What follows a login up to the next separator goes with it: a password may have an underscore in it."""
+    return _LOGIN_IN_PATH.sub(rf"\1={SECRET}", path)
 
 
 def _without_value(field: str) -> str:
@@ -64,7 +72,7 @@ def public(uri: str) -> str:
     """What tells this network camera from others: its address without any login."""
     scheme, netloc, path, query, _ = urlsplit(uri, allow_fragments=False)
     kept = [(name, value) for name, value in parse_qsl(query) if name.lower() not in SECRET_KEYS]
-    return urlunsplit((scheme, netloc.rpartition("@")[2], path, urlencode(kept), ""))
+    return urlunsplit((scheme, netloc.rpartition("@")[2], _without_login(path), urlencode(kept), ""))
 
 
 def device_of(uri: str) -> Path:

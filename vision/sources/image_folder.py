@@ -87,7 +87,10 @@ def load_picture(path: Path) -> NDArray[np.uint8] | None:
         return None
     if not data or _is_cut_off(data):
         return None
-    image = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_COLOR)
+    try:
+        image = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_COLOR)
+    except cv2.error:  # it states a size that no picture has
+        return None
     return None if image is None else np.asarray(image, np.uint8)
 
 

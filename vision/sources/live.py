@@ -132,6 +132,8 @@ class LiveCamera:
                 self._follow(self._open())
             except CameraError as error:
                 self._miss(str(error))
+            except Exception as error:  # noqa: BLE001 (whatever a driver or decoder does, it is tried again)
+                self._miss(f"camera {self._name} has failed: {error}")
             if self._index > frames:
                 back_off = FIRST_BACK_OFF
             self._closing.wait(back_off)

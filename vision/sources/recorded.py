@@ -14,7 +14,11 @@ from numpy.typing import NDArray
 
 from control.model import CameraNote, Frame
 from vision.sources.live import NOTES_KEPT
-from vision.sources.request import Size
+from vision.sources.request import CameraError, Size
+
+LONGEST_SKIP = 0.1
+"""Frames that nobody fetched are left out for this long at a time, s; a film that is behind its own pace even then
+goes on from where it is, as if it had stood still meanwhile."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,12 +58,13 @@ class RecordedCamera:
     """
 
     simulated = False
-    trouble = ""
 
     def __init__(self, film: Film, *, fast: bool = False, loop: bool = False) -> None:
         self.size = film.size
         self.rate = film.rate
         self.identity = film.identity
+        self.trouble = ""
+        """Why there are no more frames."""
         self._film = film
         self._fast = fast
         self._loop = loop
@@ -69,7 +74,7 @@ class RecordedCamera:
         self._last: Still | None = None
         self._shown = 0
         """Frames of the rounds before this one."""
-        self._damaged = 0
+        self._told_damaged = 0
         self._notes: deque[CameraNote] = deque(maxlen=NOTES_KEPT)
         self._closing = threading.Event()
         self._using = threading.Lock()
@@ -109,7 +114,11 @@ class RecordedCamera:
         """The next frame whose successor is not due yet; None when the film has ended."""
         if math.isnan(self._start):
             self._start = now
+        give_up = time.monotonic() + LONGEST_SKIP
         while self._ahead is None or now >= self._start + self._ahead.time + 1.0 / self.rate:
+            if self._ahead is not None and time.monotonic() > give_up:
+                self._start = now - self._ahead.time
+                break
             self._ahead = self._film.advance()
             self._count_damaged()
             if self._ahead is None and not self._begin_again():
@@ -120,11 +129,16 @@ class RecordedCamera:
     def _begin_again(self) -> bool:
         """From the first picture, which follows the last one in time; False when there is nothing to repeat."""
         if not self._loop or self._last is None:
+            self.trouble = self.trouble or f"{self._film.name} has ended"
+            return False
+        try:
+            self._film.rewind()
+        except CameraError as error:
+            self._last, self.trouble = None, str(error)
             return False
         self._start += self._last.time + 1.0 / self.rate
         self._shown += self._last.index + 1
         self._last = None
-        self._film.rewind()
         return True
 
     def _wait(self, until: float, *, at_the_end: bool) -> None:
@@ -140,7 +154,9 @@ class RecordedCamera:
         return image
 
     def _count_damaged(self) -> None:
-        if self._film.damaged > self._damaged:
-            self._damaged = self._film.damaged
-            words = f"{self._film.name} is damaged: {self._damaged} of its pictures could not be used so far"
+        """Told whenever it has doubled: a film in a loop comes by its damage again and again."""
+        damaged = self._film.damaged
+        if damaged >= max(1, 2 * self._told_damaged):
+            self._told_damaged = damaged
+            words = f"{self._film.name} is damaged: {damaged} of its pictures could not be used so far"
             self._notes.append(CameraNote("warn", words))

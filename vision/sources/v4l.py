@@ -21,7 +21,7 @@ from vision.sources.request import CameraError, CameraRequest, Size, in_words
 BUFFERS = 3
 """One that we decode, one that the driver fills, one between; with fewer, a camera loses pictures meanwhile."""
 LONGEST_BUFFERED = 2.0
-"""A driver's time that lies further back, s, is by another clock than the monotonic one."""
+"""A driver whose first times lie further back, s, goes by another clock than the monotonic one."""
 SAME_RATE = 0.01
 """Share by which two rates may differ and count as the same: cameras offer 29.97 for 30."""
 RAW, COMPRESSED = "YUYV", "MJPG"
@@ -34,6 +34,7 @@ class V4lCamera:
         self._name = str(device)
         check(device)
         self.identity = identity_of(device)
+        self._clock = DriverClock()
         self._capture = cv2.VideoCapture(self._name, cv2.CAP_V4L2)
         if not self._capture.isOpened():
             raise CameraError(
@@ -48,7 +49,9 @@ class V4lCamera:
     def read(self) -> Picture | None:
         if not self._capture.grab():
             raise CameraError(f"camera {self._name} gives no pictures any more: was it unplugged?")
-        captured_at = capture_time(self._capture.get(cv2.CAP_PROP_POS_MSEC) * 1e-3, time.monotonic())
+        captured_at = self._clock.capture_time(
+            self._capture.get(cv2.CAP_PROP_POS_MSEC) * 1e-3, time.monotonic()
+        )
         done, image = self._capture.retrieve()
         return Picture(np.asarray(image, np.uint8), captured_at) if done else None
 
@@ -86,14 +89,23 @@ class V4lCamera:
         return (f"rate_Hz = {asked:g} was asked, and the camera has {got:g}{offers}",)
 
 
-def capture_time(stamp: float, grabbed_at: float) -> float:
-    """When the picture was taken, monotonic s: by the driver's stamp, which lies before the frame's journey through
-    buffers and decoder, where it can be that; else when it was grabbed.
+class DriverClock:
+    """Tells by which clock a driver stamps its buffers: the monotonic one for USB cameras
+    (V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC), but some drivers give the time of day, or none."""
 
-    stamp: of the buffer, s; of the monotonic clock for USB cameras (V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC), but some
-    drivers give the time of day, or none.
-    """
-    return stamp if 0.0 <= grabbed_at - stamp <= LONGEST_BUFFERED else grabbed_at
+    def __init__(self) -> None:
+        self._is_monotonic = False
+
+    def capture_time(self, stamp: float, grabbed_at: float) -> float:
+        """When the picture was taken, monotonic s: by the driver's stamp, which lies before the frame's journey
+        through buffers and decoder, where it can be that; else when it was grabbed.
+
+        A driver that was once right is believed however old its picture is: buffers keep theirs as long as nobody
+        fetches them. stamp: of the buffer, s.
+        """
+        age = grabbed_at - stamp
+        self._is_monotonic = self._is_monotonic or 0.0 <= age <= LONGEST_BUFFERED
+        return stamp if self._is_monotonic and stamp > 0.0 and age >= 0.0 else grabbed_at
 
 
 def pixel_format(offered: Iterable[v4l_ioctl.Mode], size: Size, rate: float) -> str:

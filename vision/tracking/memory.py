@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from vision.tracking.detection import Blob
 from vision.tracking.identity import MOST, Owner
@@ -34,6 +34,8 @@ AREA_SPREAD = 0.05
 """The same of the area within the thresholds, which light and shadow change most."""
 COLOUR_SPREAD = 0.04
 """Standard deviation of the shares of blue, green and red, by the colour of the light."""
+TILT_DOUBT = 0.5
+"""The expected foreshortening may be wrong by this share of itself: how far an end lifts is measured on no rig."""
 LEARNING = 0.05
 """Share of a new sighting in the remembered looks: a third of a second at 60 Hz."""
 STEADY = 0.15
@@ -47,12 +49,16 @@ def sigma_after(gap: float, length: float) -> float:
 
 @dataclass(frozen=True, slots=True)
 class Looks:
-    """What a blob looks like: length, width (px), area (px^2), shares of blue, green and red (sum 1)."""
+    """What a blob looks like: length, width (px), area (px^2), shares of blue, green and red (sum 1).
+
+    slack: by which share length and area may be wrong because the tilt is not known well.
+    """
 
     length: float
     width: float
     area: float
     shares: tuple[float, float, float]
+    slack: float = 0.0
 
     @classmethod
     def of(cls, blob: Blob) -> Looks:
@@ -66,13 +72,25 @@ class Looks:
             shares=(blue / light, green / light, red / light),
         )
 
-    def unlike(self, other: Looks) -> float:
-        """How many standard deviations lie between the two, squared."""
+    def tilted(self, tilt: float) -> Looks:
+        """What is seen from above of a body with these looks that stands on one end, tilt in rad."""
+        short = math.cos(tilt)
+        return replace(
+            self, length=self.length * short, area=self.area * short, slack=TILT_DOUBT * (1.0 - short)
+        )
+
+    def flat(self, tilt: float) -> Looks:
+        """What a body that is seen tilted looks like when it lies flat."""
+        short = math.cos(tilt)
+        return replace(self, length=self.length / short, area=self.area / short)
+
+    def unlike(self, seen: Looks) -> float:
+        """How many standard deviations lie between these, expected, and what is seen, squared."""
         return (
-            (math.log(self.length / other.length) / LENGTH_SPREAD) ** 2
-            + (math.log(self.width / other.width) / WIDTH_SPREAD) ** 2
-            + (math.log(self.area / other.area) / AREA_SPREAD) ** 2
-            + sum((one - two) ** 2 for one, two in zip(self.shares, other.shares, strict=True))
+            math.log(self.length / seen.length) ** 2 / (LENGTH_SPREAD**2 + self.slack**2)
+            + (math.log(self.width / seen.width) / WIDTH_SPREAD) ** 2
+            + math.log(self.area / seen.area) ** 2 / (AREA_SPREAD**2 + self.slack**2)
+            + sum((one - two) ** 2 for one, two in zip(self.shares, seen.shares, strict=True))
             / COLOUR_SPREAD**2
         )
 
@@ -94,11 +112,17 @@ class Looks:
 
 @dataclass(frozen=True, slots=True)
 class Memory:
-    """The robot when it was last seen. place: px.  seen_at: s."""
+    """The robot when it was last seen. place: px.  seen_at: s.  vagueness: how well the place was known then, px."""
 
     place: Place
     seen_at: float
     looks: Looks | None = None
+    vagueness: float = 0.0
+
+    def owner_at(self, time: float, length: float, *, in_view: bool) -> Owner:
+        """Where it may be at a time, s. length: of the body, px."""
+        sigma = math.hypot(sigma_after(time - self.seen_at, length), self.vagueness)
+        return Owner(self.place, sigma, in_view)
 
     def looks_at(self, time: float) -> Looks | None:
         """What it must look like at a time, s; None when that is forgotten."""

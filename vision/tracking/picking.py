@@ -161,8 +161,10 @@ def _samples(image: Image, patch: Patch) -> tuple[Colours, Colours, Colours]:
     outside = cv2.dilate(cv2.bitwise_or(patch.inside, patch.alike), _square(RIM)) == 0
     elsewhere = np.ones(image.shape[:2], bool)
     elsewhere[v0:v1, u0:u1] = False
-    rest = picture[elsewhere]
-    return part[inside > 0], _some(part[outside]), _some(rest)
+    ring = part[outside]
+    if not len(ring):
+        raise _same_colour()
+    return part[inside > 0], _some(ring), _some(picture[elsewhere])
 
 
 def _some(colours: Colours) -> Colours:
@@ -180,11 +182,15 @@ def _fit(robot: Colours, ring: Colours, rest: Colours) -> Fit:
     if near is not None and (fit is None or fit.separation < FAR_COST * near.separation):
         fit = near
     if fit is None:
-        raise PickError(
-            "the background has the same colour as what was clicked; put the robot on another background, or a "
-            "coloured sticker on the robot"
-        )
+        raise _same_colour()
     return fit
+
+
+def _same_colour() -> PickError:
+    return PickError(
+        "the background has the same colour as what was clicked; put the robot on another background, or a "
+        "coloured sticker on the robot"
+    )
 
 
 def _area(mask: NDArray[np.uint8], patch: Patch) -> int:

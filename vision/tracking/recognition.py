@@ -9,12 +9,14 @@ from dataclasses import dataclass
 from vision.tracking.colour import Image
 from vision.tracking.detection import Blob, Candidate, Window
 from vision.tracking.identity import MOST, Owner, Question, Verdict
-from vision.tracking.memory import LOOKS_GATE, Company, Looks
+from vision.tracking.memory import LOOKS_GATE, Company, Looks, Memory
 from vision.tracking.seeking import Seeker
 from vision.tracking.windows import Place, touches
 
 POINTED = 0.75
 """Somebody who points at a robot does not miss its middle by more, body lengths."""
+VAGUE = 0.2
+"""Standard deviation of such a point about the middle, body lengths."""
 SAME = 0.35
 """Two places nearer to each other than that are one blob, seen roughly and seen precisely; body lengths: two robots
 side by side are 0.4 apart."""
@@ -97,12 +99,22 @@ class Recogniser:
             places = [place for place in places if math.dist(place, robot.centre) > SAME * self._length]
         self._company.meet(places, view.at, everywhere=True)
 
-    def pointed_out(self, view: View, told: Place) -> Place:
-        """The place of the blob that somebody points to, or the point itself without one; the rest are others."""
+    def pointed_out(self, view: View, told: Place) -> Memory:
+        """Where somebody says that the robot is; all other blobs are others.
+
+        The middle of the blob there, if it has the robot's shape; two that touch are one blob, whose middle is
+        neither's, and then the point itself is all that is known.
+        """
         places = [candidate.centre for candidate in self._seeker.everywhere(view.image)]
         nearest = min(places, key=lambda place: math.dist(place, told), default=told)
-        pointed = nearest if math.dist(nearest, told) <= POINTED * self._length else told
-        others = [place for place in places if math.dist(place, pointed) > SAME * self._length]
+        blob = self._seeker.beneath(view.image, nearest)
+        is_meant = blob is not None and math.dist(blob.centre, told) <= POINTED * self._length
+        pointed = (
+            Memory(blob.centre, view.at)
+            if blob is not None and is_meant
+            else Memory(told, view.at, vagueness=VAGUE * self._length)
+        )
+        others = [place for place in places if math.dist(place, pointed.place) > POINTED * self._length]
         self._company.meet(others, view.at, everywhere=True)
         return pointed
 

@@ -32,6 +32,8 @@ def looks_like_a_shadow(image: Image, patch: Patch) -> bool:
     u0, v0, u1, v1 = patch.window
     part = image[v0:v1, u0:u1].astype(np.float32)
     reach = cv2.dilate(patch.inside, np.ones((2 * NEAR + 1, 2 * NEAR + 1), np.uint8)) > 0
+    if reach.all():
+        return False
     region, ground = part[patch.inside > 0].mean(axis=0), np.median(part[~reach], axis=0)
     full = float(np.linalg.norm(ground))
     if not DARKEST * full <= float(np.linalg.norm(region)) <= BRIGHTEST * full:

@@ -12,7 +12,7 @@ from vision.tracking.colour import Image
 from vision.tracking.detection import Blob, Window
 from vision.tracking.heading import EndsMemory
 from vision.tracking.identity import Owner
-from vision.tracking.memory import ELSEWHERE_AFTER, Company, Looks, Memory, Steadiness, sigma_after
+from vision.tracking.memory import ELSEWHERE_AFTER, Company, Looks, Memory, Steadiness
 from vision.tracking.reasons import AGAIN, OTHER_SIZE, reason_for
 from vision.tracking.recognition import Found, Recogniser, Robot, View
 from vision.tracking.seeking import Seeker
@@ -103,8 +103,8 @@ class ColourTracker:
         self._steadiness = Steadiness(self._length)
 
     def _point_out(self, frame: Frame, told: Place) -> None:
-        place = self._recogniser.pointed_out(View(frame.image, frame.captured_at, self._whole), told)
-        self._memory, self._told = Memory(place, frame.captured_at), None
+        view = View(frame.image, frame.captured_at, self._whole)
+        self._memory, self._told = self._recogniser.pointed_out(view, told), None
 
     def _heeded(self, expected: Expectation | None) -> Expectation | None:
         """None for an expectation in NaN, and for that of a robot which the operator has said to be another one."""
@@ -126,7 +126,9 @@ class ColourTracker:
         ahead = self._reader.ahead_of(expected.pose, place)
         window = self._window(place, reach, ahead, expected.heading_sigma)
         spread = math.hypot(sigma, hurried, FLOOR * self._length)
-        robot = Robot(Owner(place, spread, self._was_seen), self._looks(frame.captured_at))
+        attitude, known = Attitude.expected(expected), self._looks(frame.captured_at)
+        looks = None if known is None else known.tilted(attitude.tilt)
+        robot = Robot(Owner(place, spread, self._was_seen), looks)
         view = View(frame.image, frame.captured_at, window)
         found = self._recogniser.look(view, robot)
         if found.robot is None:
@@ -138,7 +140,7 @@ class ColourTracker:
         elif found.others:
             self._company.meet(found.others, view.at, everywhere=False)
         side = self._ends.side(remembered_side(found.robot, ahead), found.robot.end, is_followed=True)
-        return self._locked(found.robot, view, side, Attitude.expected(expected))
+        return self._locked(found.robot, view, side, attitude)
 
     def _seek(self, frame: Frame) -> Observation:
         """Without an expectation: in the whole picture, by what is remembered."""
@@ -159,8 +161,7 @@ class ColourTracker:
     def _remembered(self, now: float) -> Owner:
         if self._memory is None:
             return Owner((0.0, 0.0), math.inf, in_view=False)
-        sigma = sigma_after(now - self._memory.seen_at, self._length)
-        return Owner(self._memory.place, sigma, self._was_seen)
+        return self._memory.owner_at(now, self._length, in_view=self._was_seen)
 
     def _looks(self, now: float) -> Looks | None:
         return None if self._memory is None else self._memory.looks_at(now)
@@ -192,7 +193,7 @@ class ColourTracker:
     def _locked(self, blob: Blob, view: View, side: int, attitude: Attitude) -> Observation:
         measurement = self._reader.measurement(blob, side, view.at, attitude)
         self._ends.heading = measurement.pose.heading
-        known, seen = self._looks(view.at), Looks.of(blob)
+        known, seen = self._looks(view.at), Looks.of(blob).flat(attitude.tilt)
         self._memory = Memory(blob.centre, view.at, seen if known is None else known.learnt(seen))
         self._seen_at, self._was_seen = view.at, True
         rivals = self._company.places(view.at, ELSEWHERE_AFTER)

@@ -24,21 +24,33 @@ export async function showBoard(pose) {
 }
 
 /** Nothing stays on the plate of a simulated rig, or nobody would see the robot again. */
-export async function clearPlate() {
+export async function clearPlate(more = {}) {
   if (!get().setup?.board) return;
   change({ board: null });
-  await put("/simulation/board", { shown: false }).catch((problem) => say(problem.message));
+  await put("/simulation/board", { shown: false }, more).catch((problem) => say(problem.message));
+}
+
+/** Somebody has left the board before the simulated camera. */
+export function LeftBoard() {
+  const left = useSetup((setup) => setup.board !== null) ?? false;
+  if (!left) return null;
+  return html`
+    <div class="guard" role="group" aria-label="Printed board">
+      <p>The printed board lies before the simulated camera and hides the robot.</p>
+      <button type="button" onClick=${() => clearPlate()}>Take the board away</button>
+    </div>
+  `;
 }
 
 /** pose: as for `showBoard`. */
 export function ShowBoard({ pose, children }) {
   const shown = useSetup((setup) => setup.board === pose);
   const show = () => doing(PLACE, "Showing the board", () => showBoard(pose));
-  const clear = () => doing(PLACE, "Taking the board away", clearPlate);
+  const clear = () => doing(PLACE, "Taking the board away", () => clearPlate());
   return html`
     <div class="row simulated">
       <span class="badge">SIM</span>
-      <${Do} needsRest pressed=${shown} act=${shown ? clear : show}>${shown ? "Take the board away" : children}<//>
+      <${Do} needsRest=${!shown} pressed=${shown} act=${shown ? clear : show}>${shown ? "Take the board away" : children}<//>
     </div>
     <${Outcome} place=${PLACE} />
   `;

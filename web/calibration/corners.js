@@ -11,16 +11,17 @@ const DEFAULT_SIDE_MM = 120;
 /** A press this near to a point takes hold of it, CSS px. */
 export const REACH = 18;
 
-/** Points in the picture that a press adds, up to `most`, or takes hold of. */
+/** Points in the picture that a press adds, up to `most`, or takes hold of; it says whether of one that was there. */
 export function usePoints(most) {
   const [points, setPoints] = useState([]);
   const held = useRef(-1);
   const put = (index, { u, v }) => setPoints((before) => before.map((point, other) => (other === index ? [u, v] : point)));
   const press = (place) => {
     held.current = points.findIndex(([u, v]) => Math.hypot(u - place.u, v - place.v) <= REACH * place.pixel);
-    if (held.current >= 0 || points.length >= most) return;
+    if (held.current >= 0 || points.length >= most) return held.current >= 0;
     held.current = points.length;
     setPoints([...points, [place.u, place.v]]);
+    return false;
   };
   const move = (place) => held.current >= 0 && put(held.current, place);
   const release = () => void (held.current = -1);

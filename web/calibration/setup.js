@@ -13,8 +13,8 @@ const CLOSED = {
   /** What the newest view of the board showed: {newest: [[u, v]] or null, hint}; who takes views; the board that
       is shown to a simulated camera: "flat", "next" or null. */
   found: null, taking: null, board: null,
-  /** Place of an action -> what went wrong with it, and what was done. */
-  errors: {}, done: {},
+  /** Place of an action -> what went wrong with it, and what was done; the rig's values after the newest save. */
+  errors: {}, done: {}, saved: "",
 };
 
 /** Where each answer comes from. */
@@ -43,7 +43,8 @@ export function goTo(step) {
 /** Reads one of the answers again; what cannot be read is said at its place. */
 export async function learn(name) {
   try {
-    change({ [name]: await read(SOURCES[name]) });
+    const answer = await read(SOURCES[name]);
+    change(name === "calibration" ? { calibration: answer, board: answer.session.board_shown } : { [name]: answer });
   } catch (problem) {
     if (!(problem instanceof Problem)) throw problem;
     note("errors", name, problem.message);
@@ -78,15 +79,27 @@ export async function doing(place, words, call) {
 export async function saving(place, words, call) {
   const answer = await doing(place, words, call);
   if (answer === null) return null;
-  set({ rig: await read("/rig") });
-  note("done", place, "saved");
+  const rig = await read("/rig");
+  set({ rig });
+  change({ saved: valuesOf(rig), done: { [place]: "saved" } });
   return answer;
 }
 
-/** The rig file as it was before the last save. */
+/** A rig's values as text, without what is said of its file. */
+const valuesOf = ({ file, ...values }) => JSON.stringify(values);
+
+/** The rig file as it was before the last save; not once somebody else has saved after that. */
 export async function undo(place) {
-  const answer = await doing(place, "Undoing", () => post("/rig/undo"));
+  const answer = await doing(place, "Undoing", async () => {
+    if (valuesOf(await read("/rig")) !== get().setup.saved) throw new Problem(ELSEWHERE);
+    return post("/rig/undo");
+  });
   if (answer === null) return;
+  set({ rig: await read("/rig") });
   note("done", place, "undone");
-  await Promise.all(["vision", "calibration"].map(learn));
 }
+
+const ELSEWHERE = "Somebody else has changed the rig file since; an undo would take that back instead.";
+
+/** Somebody has changed the rig: what is known of it is asked again. */
+export const learnOfRig = () => Promise.all(["vision", "calibration", "star", "latency"].map(learn));

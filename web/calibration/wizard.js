@@ -1,15 +1,15 @@
 /** The camera's setup: five calm steps beside the picture. The page's own STOP and Escape stay in force. */
 import { useStore } from "../store.js";
 import { html, useEffect, useRef } from "../view.js";
-import { clearPlate } from "./board.js";
+import { clearPlate, LeftBoard } from "./board.js";
 import { CameraStep } from "./camera_step.js";
 import { ColourStep } from "./colour_step.js";
 import { Guard } from "./guard.js";
 import { LensStep } from "./lens_step.js";
 import { PlaneStep } from "./plane_step.js";
 import { RobotStep } from "./robot_step.js";
-import { closeSetup, goTo, STEPS, useSetup } from "./setup.js";
-import { useStanding } from "./standing.js";
+import { closeSetup, goTo, learnOfRig, STEPS, useSetup } from "./setup.js";
+import { BOARD_STEPS, useStanding } from "./standing.js";
 
 const PAGES = {
   camera: ["Camera", CameraStep],
@@ -28,7 +28,14 @@ function Panel() {
   const step = useSetup((setup) => setup.step) ?? "camera";
   const title = useRef(null);
   const page = useRef(null);
+  const rig = useStore((state) => state.rig);
   useEffect(() => title.current?.focus(), []);
+  useEffect(() => void learnOfRig(), [rig]);
+  useEffect(() => {
+    const leave = () => clearPlate({ keepalive: true });
+    addEventListener("pagehide", leave);
+    return () => removeEventListener("pagehide", leave);
+  }, []);
   useEffect(() => {
     page.current?.scrollTo(0, 0);
     return clearPlate;
@@ -43,6 +50,7 @@ function Panel() {
       </header>
       <${Steps} step=${step} />
       <${Guard} moving=${step === "robot"} />
+      ${!BOARD_STEPS.includes(step) && html`<${LeftBoard} />`}
       <div class="step" id="wizard-step" role="tabpanel" aria-label=${name} ref=${page}><${Step} key=${step} /></div>
       <footer class="wizard-foot">
         <button type="button" disabled=${index === 0} onClick=${() => goTo(STEPS[index - 1])}>Back</button>

@@ -4,7 +4,8 @@
  */
 import { html, useEffect, useRef, useState } from "../view.js";
 
-/** {words, press(place), move?(place), release?()}; a place is {u, v, pixel} in camera pixels. */
+/** {words, press(place), move?(place), release?()}; a place is {u, v, pixel} in camera pixels. A press that answers
+    true has taken hold of something, which follows the keys until Enter lets it go. */
 const takers = [];
 /** What a layer answers that does not want the overlay over it. */
 export const ALONE = "alone";
@@ -68,8 +69,12 @@ const STEPS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowD
 /** A step of the crosshair with Shift held, px; one without. */
 const LONG_STEP = 10;
 
-/** Arrow keys move a crosshair, Enter presses at it: pointing without a mouse. */
-function keysOf(taker, painter, cross, setCross) {
+/** Arrow keys move a crosshair, Enter presses at it: pointing without a mouse. dragging: ref, what follows it. */
+function keysOf(taker, painter, cross, setCross, dragging) {
+  const enter = (place) => {
+    dragging.current = !dragging.current && taker.press(place) === true;
+    if (!dragging.current) taker.release?.();
+  };
   return (event) => {
     if (!taker) return;
     const step = STEPS[event.key];
@@ -79,8 +84,8 @@ function keysOf(taker, painter, cross, setCross) {
       const far = event.shiftKey ? LONG_STEP : 1;
       const next = { u: within(at.u + far * step[0], size[0]), v: within(at.v + far * step[1], size[1]) };
       setCross(next);
-      taker.move?.({ ...next, pixel });
-    } else if (event.key === "Enter") taker.press({ ...at, pixel });
+      if (dragging.current) taker.move?.({ ...next, pixel });
+    } else if (event.key === "Enter") enter({ ...at, pixel });
     else return;
     event.preventDefault();
   };
@@ -96,6 +101,12 @@ export function PointedCanvas({ canvas, painter, label }) {
   const taker = useTaker();
   const [cross, setCross] = useState(null);
   const held = useRef(false);
+  const dragging = useRef(false);
+  const leave = () => {
+    if (dragging.current) taker?.release?.();
+    dragging.current = false;
+    setCross(null);
+  };
   useLayer((pen) => taker && cross && drawCross(pen, cross), [taker?.words, cross]);
   const press = (event) => {
     if (!taker || event.button !== 0) return;
@@ -114,7 +125,7 @@ export function PointedCanvas({ canvas, painter, label }) {
   return html`
     <canvas ref=${canvas} role="img" aria-label=${label} tabindex=${taker ? 0 : -1} data-pointing=${taker ? "yes" : "no"}
       onPointerDown=${press} onPointerMove=${move} onPointerUp=${release} onPointerCancel=${release}
-      onKeyDown=${keysOf(taker, painter, cross, setCross)} onBlur=${() => setCross(null)}></canvas>
+      onKeyDown=${keysOf(taker, painter, cross, setCross, dragging)} onBlur=${leave}></canvas>
   `;
 }
 
