@@ -10,7 +10,8 @@ import math
 from dataclasses import dataclass
 from typing import Literal
 
-from control.coils import AXES, CoilSet, Matrix
+from control.axes import AXES
+from control.coils import CoilSet, Matrix
 from control.field_model import FieldModel
 from control.gait import Gait
 from control.limiter import CoilLimits, Granted, Wanted, check_field_slew, limit

@@ -11,8 +11,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import IntEnum
 
+from control.axes import AXES
 from control.coil_heat import OFF_AT, WARN_AT
-from control.coils import AXES
 from control.current_check import Mismatch
 from control.link.conversion import BoardState
 from control.model import Pose, Tracking

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from control.coils import AXES
+from control.axes import AXES
 from control.snapshot import Vector
 
 MISMATCH_SHARE = 0.15

@@ -190,11 +190,13 @@ class FieldModel:
 
     def heading_at(self, time: float) -> float:
         """The field's heading at a recent `time`, rad, unwrapped."""
-        return self._at(time).heading
+        earlier, later, share = self._about(time)
+        return earlier.heading + share * (later.heading - earlier.heading)
 
     def elevation_at(self, time: float) -> float:
         """The field's elevation at a recent `time`, rad: positive presses on B; 0 while it was off."""
-        return self._at(time).elevation
+        earlier, later, share = self._about(time)
+        return earlier.elevation + share * (later.elevation - earlier.elevation)
 
     def strength_at(self, time: float) -> float:
         """How strong the field was at a recent `time`, T, as it comes up from zero after the arm edge."""
@@ -202,13 +204,17 @@ class FieldModel:
             return 0.0
         return max(0.0, min(self._strength, self._strength - (self._full_at - time) * self._field_slew))
 
-    def _at(self, time: float) -> Corner:
+    def _about(self, time: float) -> tuple[Corner, Corner, float]:
+        """The corners before and after a recent `time`, and the share of the way between them that lies behind."""
         later: Corner | None = None
         for corner in reversed(self._corners):
             if corner.time <= time:
-                return corner if later is None else _between(corner, later, time)
+                if later is None:
+                    return corner, corner, 0.0
+                return corner, later, (time - corner.time) / (later.time - corner.time)
             later = corner
-        return later or Corner(time, self._heading, self._elevation)
+        only = later or Corner(time, self._heading, self._elevation)
+        return only, only, 0.0
 
     def turns(self, start: float, end: float) -> list[Turn]:
         """The pieces of motion between two recent instants (s), oldest first."""
@@ -226,12 +232,3 @@ class FieldModel:
             pieces.append(Turn(corner.heading - heading, corner.pivot))
             heading = corner.heading
         return pieces
-
-
-def _between(earlier: Corner, later: Corner, time: float) -> Corner:
-    share = (time - earlier.time) / (later.time - earlier.time)
-    return Corner(
-        time,
-        earlier.heading + share * (later.heading - earlier.heading),
-        earlier.elevation + share * (later.elevation - earlier.elevation),
-    )

@@ -13,7 +13,8 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from control.coils import AXES, Matrix, currents_for
+from control.axes import AXES
+from control.coils import Matrix, currents_for
 from control.snapshot import Vector
 
 ROUNDING = 1e-9

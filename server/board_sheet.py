@@ -27,6 +27,8 @@ RIM = 0.010
 """Free on every side, m: no office printer prints to the paper's edge."""
 BELOW = 0.030
 """Under the board, for the ruler and the words, m."""
+WORDS = 0.180
+"""The longest line under the board is so long at most, m; A4 is wider."""
 RULER = 0.100
 TICK = 0.003
 """Length of the ruler's and the middle's ticks, m."""
@@ -70,13 +72,18 @@ def _drawing(board: Board, width: float, height: float) -> Iterator[str]:
         yield f"{_points(left + x, bottom + y, across, up)} re"
     yield "f"
     yield f"{_points(LINE)} w 0 G"
-    for x0, y0, x1, y1 in [*_ruler(left, bottom), *_middle(board, left, bottom)]:
+    for x0, y0, x1, y1 in [*_ruler(_margin(left, width), bottom), *_middle(board, left, bottom)]:
         yield f"{_points(x0, y0)} m {_points(x1, y1)} l S"
 
 
 def _corner(board: Board, width: float, height: float) -> tuple[float, float]:
     """Of the board on the sheet, lower left, m."""
     return 0.5 * (width - board.size[0]), height - 0.5 * (height - BELOW + board.size[1])
+
+
+def _margin(left: float, width: float) -> float:
+    """Where ruler and words begin: with the board, or further left, so that they end on the sheet; m."""
+    return min(left, 0.5 * (width - WORDS))
 
 
 def _ruler(left: float, bottom: float) -> Iterator[tuple[float, float, float, float]]:
@@ -97,7 +104,8 @@ def _middle(board: Board, left: float, bottom: float) -> Iterator[tuple[float, f
 
 
 def _words(board: Board, paper: str, width: float, height: float) -> Iterator[str]:
-    left, bottom = _corner(board, width, height)
+    board_left, bottom = _corner(board, width, height)
+    left = _margin(board_left, width)
     yield _text("this line is 100 mm long: measure it", left + RULER + 0.004, bottom - 0.011)
     lines = (
         f"Print at 100 % (actual size) on {paper}; glue it to something flat. "

@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from control.model import Frame
 from control.safety import Refused
-from server.camera_sections import BoardSection
+from server.camera_sections import BoardSection, CameraSection
 from server.optics import assumed_model, board_of, lens_in_use, lens_section, plane_section, today
-from server.settings import MM, CameraSection
+from server.settings import MM
 from server.streams import StreamEnded
 from vision.calibration.board import BoardFinder, Sighting
 from vision.calibration.lens import Lens, LensFit, solve_lens

@@ -1,4 +1,4 @@
-"""The rig file's [camera.lens], [camera.plane] and [camera.board]: what a calibration of the camera has found."""
+"""The rig file's [camera] with its lens, plane and board: where pictures come from, and what a calibration has found."""
 
 from __future__ import annotations
 
@@ -6,7 +6,12 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from server.section import Positive, Section
+from server.section import NOT_MEASURED, Positive, Section
+
+SIMULATED_CAMERA = "simulated camera"
+"""The identity of the camera that is none."""
+LIVE = ("v4l:", "rtsp:", "http:", "https:")
+"""How the addresses of cameras begin whose frames bear the time of their arrival; a recording has its own."""
 
 Pixels = Annotated[int, Field(ge=64, le=8192)]
 Identity = Annotated[str, Field(max_length=200)]
@@ -68,3 +73,33 @@ class BoardSection(Section):
     square_mm: Annotated[float, Field(ge=3.0, le=100.0)] = 12.0
     thickness_mm: Annotated[float, Field(ge=0.0, le=50.0)] = 0.0
     """Its print lies so far above the plate."""
+
+
+class CameraSection(Section):
+    """Where the pictures come from, and a camera that looks straight down until it is calibrated."""
+
+    uri: str = "sim://"
+    size_px: tuple[Annotated[int, Field(ge=64, le=8192)], Annotated[int, Field(ge=64, le=8192)]] = (640, 480)
+    rate_Hz: Annotated[float, Field(ge=1.0, le=500.0)] = 60.0
+    exposure_ms: Annotated[float, Field(ge=0.05, le=1000.0)] | None = None
+    """Of a real camera, like the next two; without it, it is the camera's own automatic."""
+    gain: Annotated[float, Field(ge=0.0, le=100_000.0)] | None = None
+    """In the steps of the camera's driver."""
+    white_balance_K: Annotated[float, Field(ge=1000.0, le=20_000.0)] | None = None
+    height_mm: Annotated[float, Field(gt=0.0, le=10_000.0)] = 350.0
+    picture_height_mm: Annotated[float, Field(gt=0.0, le=10_000.0)] = 130.0
+    """Length on the plate that fills the picture's height."""
+    tilt_deg: tuple[Annotated[float, Field(ge=-30, le=30)], Annotated[float, Field(ge=-30, le=30)]] = (
+        1.5,
+        0.0,
+    )
+    distortion: tuple[float, float, float, float, float] = (-0.12, 0.02, 0.0, 0.0, 0.0)
+    latency_ms: Annotated[float, Field(ge=0.0, le=200.0)] = 0.0
+    """From mid-exposure to the time that a frame is stamped with; subtracted from the stamps."""
+    latency_source: Annotated[str, Field(max_length=120)] = NOT_MEASURED
+    """Where the latency comes from: the date and the standard error of a measurement."""
+    lens: LensSection | None = None
+    """Without it, as assumed above."""
+    plane: PlaneSection | None = None
+    """Without it, the camera hangs as assumed above."""
+    board: BoardSection = BoardSection()

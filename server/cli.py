@@ -11,20 +11,13 @@ import sys
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from pydantic import ValidationError
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
-from control import plugins
-from control.registry import UnknownName
-from control.runs import Choice, RunRequest, Selection
-from control.safety import Refused
-from control.snapshot import Snapshot
-from control.trajectories import OutsideWorkspace
-from control.trajectories.waypoint_file import WaypointFileError
-from server.commands import calibrate, firmware
+from server.commands import firmware
 from server.commands.consent import YesOption, ask_for_consent
 from server.commands.doctor import doctor
 from server.commands.outcome import (
@@ -42,9 +35,13 @@ from server.commands.outcome import (
 from server.commands.reproduce import reproduce
 from server.data_folder import data_folder
 from server.environment import check_environment
-from server.settings import RigFile, in_words
+from server.section import in_words
+from server.settings import RigFile
 from server.signals import coils_stop_first
-from server.waypoint_import import with_points
+
+if TYPE_CHECKING:
+    from control.runs import Choice, RunRequest
+    from control.snapshot import Snapshot
 
 app = typer.Typer(
     add_completion=False,
@@ -54,7 +51,6 @@ app = typer.Typer(
 )
 
 
-app.add_typer(calibrate.app, name="calibrate")
 app.add_typer(firmware.app, name="firmware")
 app.command()(doctor)
 app.command()(reproduce)
@@ -77,6 +73,8 @@ PluginOption = Annotated[
 
 def load_plugins(files: list[Path] | None) -> None:
     """Installed plug-ins that are broken are left out with a word; a broken one that was asked for ends the command."""
+    from control import plugins
+
     for problem in plugins.load_installed():
         warn(str(problem))
     for file in files or []:
@@ -84,6 +82,18 @@ def load_plugins(files: list[Path] | None) -> None:
             plugins.load_file(file)
         except plugins.PluginError as error:
             raise fail(str(error), USAGE) from error
+
+
+@app.command(
+    add_help_option=False, context_settings={"ignore_unknown_options": True, "allow_extra_args": True}
+)
+def calibrate(context: typer.Context) -> None:
+    """Measure a rig."""
+    from server.commands.calibrate import (
+        app as calibrations,  # they need most of the program: only they load it
+    )
+
+    calibrations(context.args, prog_name=context.command_path)
 
 
 @app.command()
@@ -143,6 +153,8 @@ def run(
     check_environment()
     load_plugins(plugin)
     rig_file = with_simulation(read_rig_file(rig), {"plant": plant, "seed": seed})
+    from control.runs import Choice
+
     choices = _parameters(settings or [])
     gait = {"sweep_deg": sweep, "tilt_deg": tilt, "path_step_s": path_step, **choices["gait"]}
     request = _request(
@@ -157,6 +169,8 @@ def run(
 
 def _run(rig_file: RigFile, request: RunRequest, as_json: bool, *, consent: bool) -> None:
     from control.link.conversion import LinkError
+    from control.safety import Refused
+    from control.trajectories import OutsideWorkspace
     from server.api.runs import metrics_json
     from server.assembly import build_machine
     from server.headless import run_headless
@@ -202,6 +216,9 @@ def _parameters(settings: list[str]) -> dict[str, dict[str, Any]]:
 
 
 def _points_read(trajectory: str, parameters: dict[str, Any]) -> dict[str, Any]:
+    from control.trajectories.waypoint_file import WaypointFileError
+    from server.waypoint_import import with_points
+
     try:
         return with_points(trajectory, parameters)
     except WaypointFileError as error:
@@ -219,6 +236,8 @@ def _value(text: str) -> Any:
 def _request(
     controller: Choice, trajectory: Choice, gait: dict[str, Any], passes: float, duration: float | None
 ) -> RunRequest:
+    from control.registry import UnknownName
+    from control.runs import RunRequest, Selection
     from server.api.schemas import GaitSettings, RunBody
 
     try:

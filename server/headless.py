@@ -13,7 +13,7 @@ from control.snapshot import RigState, Snapshot
 from server.assembly import Machine
 
 FRAME_TIMEOUT = 0.034
-"""As in `server.rig`, s."""
+"""As in `server.rig_life`, s."""
 READY_WITHIN = 5.0
 """Camera, track and board must be there after this long, s of rig time."""
 

@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from server.camera_sections import LensSection, PlaneSection
-from server.settings import MM, CameraSection
+from server.camera_sections import CameraSection, LensSection, PlaneSection
+from server.settings import MM
 from vision.calibration.board import Board
 from vision.calibration.lens import Lens, LensFit
 from vision.calibration.plane import PlaneFit, camera_model

@@ -14,7 +14,8 @@ import tomlkit
 from pydantic import ValidationError
 
 from server.atomic_save import Staged, keep_previous, previous_of
-from server.settings import FORMAT, RigFile, Section, in_words
+from server.section import Section, in_words
+from server.settings import FORMAT, RigFile
 from vision.sources.addresses import shown
 
 NAME = "rig.toml"

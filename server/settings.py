@@ -5,17 +5,16 @@ The defaults are the paper's rig, simulated (paper, section 6; what is assumed t
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, ValidationError, field_validator, model_validator
+from pydantic import Field, field_validator, model_validator
 
 from control.simulation.wiring import Wiring
-from server.camera_sections import BoardSection, LensSection, PlaneSection
-from server.section import Positive, Section
+from server.camera_sections import LIVE, SIMULATED_CAMERA, CameraSection
+from server.coil_sections import Coils, LimitsSection, PerCoil, RegistrationSection
+from server.section import NOT_MEASURED, Section
 from server.vision_section import VisionSection
-from vision.simulated.scenes import FOR_ANY_LENS
+from vision.simulated.scene_names import FOR_ANY_LENS
 from vision.sources.addresses import shown
 
 MM = 1e-3
@@ -25,17 +24,8 @@ FORMAT = 1
 """Version of the rig file's layout that this program reads and writes."""
 
 Sigma = Annotated[float, Field(gt=0.0, le=1000.0)]
-PerCoil = Annotated[list[Annotated[float, Field(gt=0.0, le=30.0)]], Field(min_length=3, max_length=3)]
-"""A VNH5019 carries 30 A for a moment and 12 A for long."""
-
 
 Lead = Literal["x", "y", "z", "-x", "-y", "-z"]
-
-
-LIVE = ("v4l:", "rtsp:", "http:", "https:")
-"""How the addresses of cameras begin whose frames bear the time of their arrival; a recording has its own."""
-NOT_MEASURED = "not measured"
-"""What stands for the source of figures that are assumed."""
 
 
 class Robot(Section):
@@ -47,116 +37,6 @@ class Robot(Section):
     body_height_mm: Annotated[float, Field(ge=0.0, le=50.0)] = 3.0
     lift_ratio: Annotated[float, Field(gt=0.0, le=1000.0)] = 3.2
     """2 m B / (W L): magnet torque over weight; decides how far the free end lifts."""
-
-
-SenseGain = Annotated[float, Field(ge=17.5, le=43.5)]
-"""The driver's 34.88 mA per count of the UNO's ADC is known to be off by up to 25 %."""
-
-
-class Coil(Section):
-    diameter_mm: Positive
-    separation_mm: Positive
-    turns: Annotated[int, Field(gt=0)]
-    resistance_ohm: Positive
-    inductance_mH: Positive
-    sense_mA_per_count: tuple[SenseGain, SenseGain] = (34.88, 34.88)
-    """Of the bridge's current sense, for positive and for negative current."""
-    field_gain: Annotated[float, Field(ge=0.2, le=5.0)] = 1.0
-    """Measured field over the geometry's, from `pivotrig calibrate coils`."""
-
-
-class RegistrationSection(Section):
-    """Where the coils stand in the camera's workspace, from `pivotrig calibrate registration`."""
-
-    x_mm: Annotated[float, Field(ge=-200.0, le=200.0)] = 0.0
-    """The coils' centre."""
-    y_mm: Annotated[float, Field(ge=-200.0, le=200.0)] = 0.0
-    rotation_deg: Annotated[float, Field(ge=-360.0, le=360.0)] = 0.0
-    """From the workspace's x axis to that of the x coils, counter-clockwise."""
-    magnet_reversed: bool = False
-    """The magnet's north is at end B."""
-
-
-class Coils(Section):
-    """Outer diameters and separations are the paper's; turns, resistances and inductances are assumed."""
-
-    x: Coil = Coil(diameter_mm=390, separation_mm=240, turns=314, resistance_ohm=2.5, inductance_mH=125)
-    y: Coil = Coil(diameter_mm=305, separation_mm=190, turns=248, resistance_ohm=2.0, inductance_mH=55)
-    z: Coil = Coil(diameter_mm=225, separation_mm=110, turns=154, resistance_ohm=1.5, inductance_mH=14)
-    supply_V: Annotated[float, Field(gt=0.0, le=60.0)] = 24.0
-    supply_full_scale_V: Annotated[float, Field(ge=0.0, le=65.0)] = 55.0
-    """The supply that fills the board's ADC: 5 V times the divider on A5; 0 where none is wired."""
-    allocation: Literal["local", "centre"] = "local"
-    """local: field and tilt hold over the whole plate; centre: the paper's, exact at the centre only."""
-    field_source: Annotated[str, Field(max_length=120)] = "geometry"
-    """Where the field gains come from: the geometry, or the date and the residual of a measurement."""
-    registration: RegistrationSection = RegistrationSection()
-
-
-class LimitsSection(Section):
-    """What one coil, all of them, the robot and its field may do; what is heard of them is held against it."""
-
-    current_A: PerCoil = Field(default=[8.0, 8.0, 8.0])
-    power_W: Annotated[float, Field(gt=0.0, le=10_000.0)] = 300.0
-    """Heat of all coils together: what a 24 V supply of 12.5 A gives (assumed)."""
-    current_slew_A_s: Annotated[
-        list[Annotated[float, Field(gt=0.0, le=1e6)]], Field(min_length=3, max_length=3)
-    ] = Field(default=[192.0, 436.0, 1714.0])
-    """V / L of each coil at 24 V: no bridge of that supply changes its current faster."""
-    continuous_A: PerCoil = Field(default=[9.0, 7.9, 6.1])
-    """What each coil bears for ever, 40 K above the room; estimated from its size and wire."""
-    heat_time_constant_s: Annotated[
-        list[Annotated[float, Field(ge=1.0, le=1e6)]], Field(min_length=3, max_length=3)
-    ] = Field(default=[2700.0, 2100.0, 1300.0])
-    field_mT: Annotated[float, Field(gt=0.0, le=50.0)] = 15.0
-    rate_deg_s: Annotated[float, Field(gt=0.0, le=3600.0)] = 360.0
-    workspace_mm: Annotated[float, Field(gt=0.0, le=1000.0)] = 120.0
-    soft_margin_mm: Annotated[float, Field(ge=0.0, le=100.0)] = 2.0
-    """How far outside the workspace the robot's centre may be driven."""
-    hard_margin_mm: Annotated[float, Field(ge=0.0, le=100.0)] = 8.0
-    """How far outside the workspace the coils are switched off."""
-
-    @model_validator(mode="after")
-    def _margins_are_ordered(self) -> LimitsSection:
-        if self.soft_margin_mm > self.hard_margin_mm:
-            raise ValueError(
-                f"soft_margin_mm ({self.soft_margin_mm}) must not exceed hard_margin_mm ({self.hard_margin_mm})"
-            )
-        return self
-
-
-SIMULATED_CAMERA = "simulated camera"
-"""The identity of the camera that is none."""
-
-
-class CameraSection(Section):
-    """Where the pictures come from, and a camera that looks straight down until it is calibrated."""
-
-    uri: str = "sim://"
-    size_px: tuple[Annotated[int, Field(ge=64, le=8192)], Annotated[int, Field(ge=64, le=8192)]] = (640, 480)
-    rate_Hz: Annotated[float, Field(ge=1.0, le=500.0)] = 60.0
-    exposure_ms: Annotated[float, Field(ge=0.05, le=1000.0)] | None = None
-    """Of a real camera, like the next two; without it, it is the camera's own automatic."""
-    gain: Annotated[float, Field(ge=0.0, le=100_000.0)] | None = None
-    """In the steps of the camera's driver."""
-    white_balance_K: Annotated[float, Field(ge=1000.0, le=20_000.0)] | None = None
-    height_mm: Annotated[float, Field(gt=0.0, le=10_000.0)] = 350.0
-    picture_height_mm: Annotated[float, Field(gt=0.0, le=10_000.0)] = 130.0
-    """Length on the plate that fills the picture's height."""
-    tilt_deg: tuple[Annotated[float, Field(ge=-30, le=30)], Annotated[float, Field(ge=-30, le=30)]] = (
-        1.5,
-        0.0,
-    )
-    distortion: tuple[float, float, float, float, float] = (-0.12, 0.02, 0.0, 0.0, 0.0)
-    latency_ms: Annotated[float, Field(ge=0.0, le=200.0)] = 0.0
-    """From mid-exposure to the time that a frame is stamped with; subtracted from the stamps."""
-    latency_source: Annotated[str, Field(max_length=120)] = NOT_MEASURED
-    """Where the latency comes from: the date and the standard error of a measurement."""
-    lens: LensSection | None = None
-    """Without it, as assumed above."""
-    plane: PlaneSection | None = None
-    """Without it, the camera hangs as assumed above."""
-    board: BoardSection = BoardSection()
 
 
 class LinkSection(Section):
@@ -328,24 +208,3 @@ class RigFile(Section):
                 whole["camera"][part] = None
         whole["simulation"]["board"] = "twin"
         return RigFile.model_validate(whole)
-
-
-def _nowhere(_: tuple[str | int, ...]) -> str:
-    return ""
-
-
-def in_words(error: ValidationError, place: Callable[[tuple[str | int, ...]], str] = _nowhere) -> str:
-    """One line for each wrong value: its name, what is wrong with it, what was given, and where `place` finds it."""
-    lines = []
-    for problem in error.errors(include_url=False):
-        where = ".".join(str(part) for part in problem["loc"]) or "the whole file"
-        is_one_value = problem["type"] not in ("missing", "extra_forbidden") and not isinstance(
-            problem["input"], dict
-        )
-        given = f" (given: {problem['input']!r})" if is_one_value else ""
-        lines.append(f"  {where}: {problem['msg']}{given}{place(problem['loc'])}")
-    return "\n".join(lines)
-
-
-def radians(pair: tuple[float, float]) -> tuple[float, float]:
-    return math.radians(pair[0]), math.radians(pair[1])

@@ -38,3 +38,24 @@ def test_this_environment_has_no_other_package_called_control() -> None:
     with pytest.raises(PackageNotFoundError):
         distribution("control")
     environment.check_environment()
+
+
+HEAVY = ["cv2", "scipy", "magpylib", "fastapi", "viser"]
+LIGHT = f"import sys, server.cli, server.rig_file; print(*(name for name in {HEAVY} if name in sys.modules))"
+
+
+def test_what_only_some_commands_need_is_loaded_by_those_alone() -> None:
+    """`pivotrig --help` and a look into the rig file take a second, not four."""
+    answer = subprocess.run(
+        [sys.executable, "-c", LIGHT], cwd=ROOT, capture_output=True, text=True, check=True
+    )
+    assert answer.stdout.split() == []
+
+
+@pytest.mark.parametrize("order", ["cv2, vision.sources.opening", "vision.sources.opening, cv2"])
+def test_opencv_works_in_one_thread_and_says_nothing(order: str) -> None:
+    look = f"import {order}; print(cv2.getNumThreads(), cv2.utils.logging.getLogLevel())"
+    answer = subprocess.run(
+        [sys.executable, "-c", look], cwd=ROOT, capture_output=True, text=True, check=True
+    )
+    assert answer.stdout.split() == ["1", "0"]

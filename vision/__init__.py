@@ -1,9 +1,8 @@
 """Pixels to pose: camera sources, calibration, detection, tracking, the synthetic camera, encoding."""
 
-import cv2
+import os
 
-from vision.sources.decoders import quieten
+from vision.sources.decoders import ENVIRONMENT
 
-quieten()
-# The pictures are small: sharing their rows among threads costs more than it saves.
-cv2.setNumThreads(1)
+for _name, _value in ENVIRONMENT.items():
+    os.environ.setdefault(_name, _value)  # what somebody has set counts

@@ -15,7 +15,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from control.coils import AXES, Axis, CoilPair, field_per_ampere
+from control.axes import AXES, Axis
+from control.coils import CoilPair, field_per_ampere
 from control.snapshot import Vector
 
 Floats = NDArray[np.float64]

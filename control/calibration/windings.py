@@ -11,7 +11,8 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from control.coils import AXES, Axis, CoilPair
+from control.axes import AXES, Axis
+from control.coils import CoilPair
 
 RESISTANCE_TOLERANCE = 0.15
 """A resistance may differ by this share from the rig file's: a winding 38 K warmer than when it was measured."""

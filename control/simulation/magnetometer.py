@@ -6,7 +6,8 @@ import random
 
 import numpy as np
 
-from control.coils import AXES, Axis, field_per_ampere
+from control.axes import AXES, Axis
+from control.coils import field_per_ampere
 from control.simulation.world import World
 from control.snapshot import Vector
 

@@ -11,10 +11,16 @@ from fastapi import APIRouter
 from control.parts import Camera
 from server.api.access import TheRig
 from server.api.body import StrictRoute
+from server.api.problems import Problem, Rejected
 from vision.sources.addresses import device_of, shown
-from vision.sources.listing import FoundCamera, find_cameras
+from vision.sources.listing import FoundCamera
 from vision.sources.request import CameraError
+from vision.sources.search import CameraSearch
 
+SEARCH_TIME = 3.0
+"""The drivers of all cameras may take so long to say what they offer, s."""
+
+search = CameraSearch()
 router = APIRouter(tags=["cameras"], route_class=StrictRoute)
 
 
@@ -25,9 +31,18 @@ async def cameras(rig: TheRig) -> list[dict[str, Any]]:
     An `identity` tells a camera from others wherever it is plugged in; the `uri` is what camera.uri takes, without
     the login of a network camera. `sizes` and `rates_Hz` are empty where a camera does not tell what it offers.
     """
-    found = await asyncio.to_thread(find_cameras)
+    found = await _found()
     machine = rig.machine
     return _listed(machine.camera, machine.settings.camera.uri, found)
+
+
+async def _found() -> list[FoundCamera]:
+    try:
+        async with asyncio.timeout(SEARCH_TIME):
+            return await asyncio.shield(asyncio.wrap_future(search.begin()))
+    except TimeoutError:
+        detail = f"A camera's driver has not answered for {SEARCH_TIME:g} s: unplug it and plug it in again."
+        raise Rejected(Problem(503, "No list of cameras", detail)) from None
 
 
 def _listed(camera: Camera, uri: str, found: list[FoundCamera]) -> list[dict[str, Any]]:

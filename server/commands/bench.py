@@ -8,18 +8,19 @@ from typing import Annotated
 
 import typer
 
+from control.axes import AXES, Axis
 from control.calibration.bench import Bench, BenchSettings
 from control.calibration.field_gain import BadReadings
 from control.calibration.turning import Unclear
 from control.calibration.windings import BadAmmeter, SenseGains
-from control.coils import AXES, Axis
 from control.identification import TooLittle
 from control.link.conversion import LinkError
 from control.safety import Refused
-from server.assembly import FULL_FIELD, Machine
+from server.assembly import Machine
 from server.commands.consent import ask_for_consent
 from server.commands.outcome import FAILED, REFUSED, USAGE, fail
 from server.settings import MS, RigFile
+from server.settings_in_si import FULL_FIELD
 from server.signals import coils_stop_first
 
 SaveOption = Annotated[

@@ -26,13 +26,16 @@ from server.commands.outcome import (
     read_rig_file,
     with_simulation,
 )
-from server.settings import MM, RigFile, in_words
+from server.section import in_words
+from server.settings import MM, RigFile
 from server.signals import coils_stop_first
 
 if TYPE_CHECKING:
     from server.gait_calibration import Star
 
-app = typer.Typer(no_args_is_help=True, help="Measure a rig.")
+app = typer.Typer(
+    add_completion=False, no_args_is_help=True, pretty_exceptions_enable=False, help="Measure a rig."
+)
 
 Found = tuple[dict[str, Any], dict[str, Any]]
 

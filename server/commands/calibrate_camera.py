@@ -8,11 +8,10 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from server.camera_sections import BoardSection
+from server.camera_sections import BoardSection, CameraSection
 from server.commands.bench import JsonOption, SaveOption, explained
 from server.commands.calibration_result import saved_or_shown, show
 from server.commands.outcome import FAILED, RigOption, fail, read_rig_file
-from server.settings import CameraSection
 
 if TYPE_CHECKING:
     from vision.calibration.board import Image, Sighting

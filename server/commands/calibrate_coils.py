@@ -10,11 +10,11 @@ from typing import Annotated, Any
 
 import typer
 
+from control.axes import Axis
 from control.calibration.field_gain import BadReadings, FieldCalibration, Reading, fit_field
-from control.coils import Axis
 from control.simulation.magnetometer import Magnetometer
 from control.snapshot import Vector
-from server.assembly import Machine, coil_set
+from server.assembly import Machine
 from server.commands.answers import Answers
 from server.commands.bench import (
     CoilOption,
@@ -33,6 +33,7 @@ from server.commands.consent import YesOption
 from server.commands.held_coil import Held, HeldCoil, Instrument, held_each_way
 from server.commands.outcome import USAGE, RigOption, fail, read_rig_file
 from server.settings import MM, RigFile
+from server.settings_in_si import coil_set
 
 MT = 1e-3
 

@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from server.camera_sections import CameraSection
 from server.commands.bench import JsonOption, SaveOption
 from server.commands.calibration_result import saved_or_shown, show
 from server.commands.outcome import USAGE, RigOption, fail, read_rig_file
-from server.settings import MM, CameraSection, RigFile
+from server.settings import MM, RigFile
 
 if TYPE_CHECKING:
     from server.commands.camera_bench import CameraBench

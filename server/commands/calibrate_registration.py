@@ -17,12 +17,15 @@ from control.calibration.turning import Evidence, gather
 from control.calibration.verdict import Cause, Verdict, diagnose
 from control.model import Pose
 from control.registration import Registration
-from server.assembly import Machine, registration_of
+from server.assembly import Machine
+from server.coil_sections import RegistrationSection
 from server.commands.bench import JsonOption, SaveOption, explained, opened
 from server.commands.calibration_result import saved_or_shown
 from server.commands.consent import YesOption
 from server.commands.outcome import FAILED, USAGE, RigOption, fail, read_rig_file
-from server.settings import MM, RegistrationSection, RigFile, in_words
+from server.section import in_words
+from server.settings import MM, RigFile
+from server.settings_in_si import registration_of
 
 
 class Picture(StrEnum):

@@ -18,7 +18,7 @@ from control.calibration.windings import (
     check_windings,
     without_cut_off,
 )
-from server.assembly import Machine, coil_set
+from server.assembly import Machine
 from server.commands.answers import Answers
 from server.commands.bench import (
     CoilOption,
@@ -37,6 +37,7 @@ from server.commands.consent import YesOption
 from server.commands.held_coil import Held, HeldCoil, Instrument, each_way, held_each_way
 from server.commands.outcome import FAILED, USAGE, RigOption, fail, read_rig_file
 from server.settings import RigFile
+from server.settings_in_si import coil_set
 
 AmmeterCurrent = Annotated[
     float,

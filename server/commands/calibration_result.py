@@ -11,7 +11,7 @@ from pydantic import ValidationError
 from server.commands.outcome import FAILED, console, fail
 from server.data_folder import rig_path
 from server.rig_file import RigFileError, RigStore
-from server.settings import in_words
+from server.section import in_words
 
 
 def saved_or_shown(rig: Path | None, changes: dict[str, Any], save: bool) -> str:

@@ -17,7 +17,8 @@ from rich.text import Text
 from server.commands.outcome import FAILED, USAGE, RigOption, console, fail
 from server.data_folder import data_folder, rig_path
 from server.diagnosis.check import Check, Level
-from server.settings import RigFile, in_words
+from server.section import in_words
+from server.settings import RigFile
 
 COLOURS = {Level.OK: "green", Level.INFO: "cyan", Level.WARNING: "yellow", Level.PROBLEM: "bold red"}
 

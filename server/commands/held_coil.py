@@ -12,9 +12,9 @@ from typing import Self
 
 import typer
 
+from control.axes import AXES, Axis
 from control.calibration.bench import Bench
 from control.calibration.windings import SenseGains, without_cut_off
-from control.coils import AXES, Axis
 from control.link.conversion import Telemetry
 from control.safety import Refused
 from server.commands.outcome import console

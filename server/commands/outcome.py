@@ -15,7 +15,8 @@ from rich.console import Console
 
 from server.data_folder import rig_path
 from server.rig_file import RigFileError, RigStore
-from server.settings import RigFile, in_words
+from server.section import in_words
+from server.settings import RigFile
 
 FAILED, USAGE, REFUSED = 1, 2, 3
 

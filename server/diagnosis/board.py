@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
-from control.coils import AXES
+from control.axes import AXES
 from control.link.conversion import BoardState, LinkError, Telemetry
 from control.link.port import Link
 from control.link.probe import PortState, probe

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from server.camera_sections import LensSection, PlaneSection
+from server.camera_sections import CameraSection, LensSection, PlaneSection
 from server.diagnosis.check import Check, info, ok, problem, warning
 from server.optics import misfit
-from server.settings import CameraSection, RigFile
+from server.settings import RigFile
 
 LENS, PLANE = "lens", "plane"
 COMMANDS = {LENS: "print `pivotrig calibrate board`, then run `pivotrig calibrate lens --save`",

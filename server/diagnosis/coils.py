@@ -7,13 +7,14 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from control.axes import AXES
 from control.coil_heat import WARN_AT
-from control.coils import AXES, WORST_CONDITION, CoilSet
+from control.coils import WORST_CONDITION, CoilSet
 from control.gait import Gait
 from control.link.conversion import LinkError, configure_message
-from server.assembly import board_configuration, coil_set
 from server.diagnosis.check import Check, ok, problem, warning
 from server.settings import RigFile
+from server.settings_in_si import board_configuration, coil_set
 
 GRID = 9
 """Places along each side of the workspace at which the field is looked at."""

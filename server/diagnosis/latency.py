@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from server.diagnosis.check import Check, ok, warning
-from server.settings import NOT_MEASURED, RigFile
+from server.section import NOT_MEASURED
+from server.settings import RigFile
 
 
 def examine(settings: RigFile) -> Check:

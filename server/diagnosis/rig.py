@@ -9,12 +9,13 @@ from control.link.discovery import AUTO, TheOneBoard
 from control.link.opening import PortError
 from control.link.port import Link
 from control.parts import Camera
-from server.assembly import board_configuration, build_machine, camera_request
+from server.assembly import build_machine
 from server.diagnosis import board, camera, latency
 from server.diagnosis.check import Check, problem
 from server.diagnosis.ports import is_device
 from server.exchange import without_traffic_log
 from server.settings import RigFile
+from server.settings_in_si import board_configuration, camera_request
 from vision.sources.listing import find_cameras
 from vision.sources.opening import CameraError, open_camera
 

@@ -36,10 +36,9 @@ def own_server(tmp_path: Path) -> Iterator[ServedRig]:
 
 @pytest.fixture(scope="module")
 def workshop(tmp_path_factory: pytest.TempPathFactory) -> Iterator[ServedRig]:
-    """A server whose rig file the tests of one module may change; it was saved once, so that saves can be undone."""
+    """A server whose rig file the tests of one module may change."""
     rig = ServedRig(tmp_path_factory.mktemp("workshop"))
     rig.start()
-    rig.send("PATCH", "/rig", {"name": "Bench 5"})
     yield rig
     rig.stop()
 

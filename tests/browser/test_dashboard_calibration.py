@@ -103,6 +103,67 @@ def test_four_clicked_corners_give_a_plane_whose_square_is_drawn_and_a_corner_ca
     assert visit.complaints == []
 
 
+def test_corners_are_set_and_moved_by_keys_alone(visit: Visit) -> None:
+    page = visit.page
+    setup = open_setup(page, "Plane")
+    setup.get_by_text("Four corners", exact=True).click()
+    picture(page).focus()
+
+    def press(*keys: str) -> None:
+        for key in keys:
+            page.keyboard.press(key)
+
+    ten = "Shift+Arrow"
+    press(*[f"{ten}Left"] * 9, *[f"{ten}Up"] * 9, "Enter")
+    for way in ("Right", "Down", "Left"):
+        press(*[f"{ten}{way}"] * 18, "Enter")
+    expect(page.get_by_text("Drag the corners until they fit")).to_be_visible()
+    places = ["230, 150 px", "410, 150 px", "410, 330 px", "230, 330 px"]
+    expect(setup.locator("ol.points .soft")).to_have_text(places)
+    press("Enter", f"{ten}Left", "ArrowDown", "Enter", f"{ten}Up")
+    expect(setup.locator("ol.points .soft")).to_have_text([*places[:3], "220, 331 px"])
+    button(page, "Work out the plane").click()
+    expect(setup.get_by_role("region", name="Found")).to_contain_text("mm")
+
+
+def test_a_board_that_was_left_by_a_page_that_was_closed_can_be_taken_away(
+    visit: Visit, workshop: ServedRig
+) -> None:
+    page = visit.page
+    workshop.send("PUT", "/simulation/board", {"shown": True, "pose": "next"})
+    workshop.send("POST", "/estop")
+    setup = open_setup(page, "Camera")
+    setup.get_by_role("group", name="Printed board").get_by_role("button", name="Take the board away").click()
+    expect(setup.get_by_role("group", name="Printed board")).to_have_count(0)
+    eventually(lambda: workshop.ask("/state")["tracking"] == "locked", "the robot is seen again")
+
+    workshop.rest()
+    page.get_by_role("tab", name="Plane").click()
+    button(page, "Lay the printed board on the plate").click()
+    expect(button(page, "Take the board away")).to_be_visible()
+    page.reload()
+    eventually(lambda: workshop.ask("/state")["tracking"] == "locked", "a page that is left takes it away")
+
+
+def test_two_pages_see_each_other_s_saves_and_neither_undoes_the_other_s(
+    visit: Visit, workshop: ServedRig, open_tab: OpenTab
+) -> None:
+    page, other = visit.page, open_tab(workshop.url).page
+    workshop.send("PATCH", "/rig", {"name": "Bench 6"})
+    setup, watching = open_setup(page, "Plane"), open_setup(other, "Plane")
+    button(page, "Lay the printed board on the plate").click()
+    expect(button(page, "Take the board away")).to_be_visible()
+    button(page, "Look for the board").click()
+    button(page, "Save the plane").click()
+    expect(watching.get_by_role("region", name="Saved now")).to_contain_text("the printed board")
+    expect(other.get_by_role("tab", name="Plane")).to_contain_text("done")
+    workshop.send("PATCH", "/rig", {"name": "Bench 7"})
+    button(page, "Undo").click()
+    expect(setup.get_by_text("Somebody else has changed the rig file since")).to_be_visible()
+    assert workshop.ask("/rig")["name"] == "Bench 7"
+    assert visit.complaints == []
+
+
 def drag_a_corner(page: Page, rig: ServedRig) -> None:
     box = picture(page).bounding_box()
     assert box is not None
@@ -191,6 +252,9 @@ def test_a_measured_delay_is_shown_with_its_uncertainty_and_saved_once_disarmed(
     expect(delay.get_by_text("Saved in the rig file.")).to_be_visible()
     expect(setup.get_by_role("region", name="Saved now")).to_contain_text("standard error")
     assert workshop.ask("/vision")["latency_ms"] > 0
+    button(page, "Undo").click()
+    expect(setup.get_by_role("region", name="Saved now")).to_contain_text("not measured")
+    expect(save).to_be_enabled()
     assert visit.complaints == []
 
 

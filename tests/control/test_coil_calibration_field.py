@@ -9,8 +9,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from control.axes import AXES
 from control.calibration.field_gain import BadReadings, Reading, fit_field
-from control.coils import AXES, PAPER_PAIRS, field_per_ampere
+from control.coils import PAPER_PAIRS, field_per_ampere
 
 patient = settings(deadline=None)
 """What an example takes on a busy computer is no matter here."""

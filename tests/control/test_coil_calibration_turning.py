@@ -6,11 +6,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from control.axes import AXES
 from control.calibration.heading_offset import corrected, heading_offset
 from control.calibration.robot_turn import PROBE
 from control.calibration.turning import Evidence, Station, Unclear, gather
 from control.calibration.verdict import Cause, diagnose
-from control.coils import AXES, command_field
+from control.coils import command_field
 from control.model import PIVOT_A, PIVOT_B, Pose, opposite, pivot_point, wrap
 from control.registration import Registration
 

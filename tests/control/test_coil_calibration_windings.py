@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from control.axes import AXES, Axis
 from control.calibration.windings import (
     RESISTANCE_TOLERANCE,
     AmmeterReading,
@@ -16,7 +17,7 @@ from control.calibration.windings import (
     calibrate_sense,
     check_windings,
 )
-from control.coils import AXES, PAPER_PAIRS, Axis
+from control.coils import PAPER_PAIRS
 
 GAINS: dict[Axis, SenseGains] = dict.fromkeys(AXES, (0.0349, 0.0349))
 

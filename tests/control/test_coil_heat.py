@@ -17,7 +17,7 @@ from control.coil_heat import (
     winding_estimate,
 )
 from control.coils import PAPER_PAIRS
-from server.settings import LimitsSection
+from server.coil_sections import LimitsSection
 
 LIMITS = ThermalLimits(continuous=(9.0, 8.0, 6.0), time_constants=(2700.0, 2100.0, 1300.0))
 COLD = CoilHeat()

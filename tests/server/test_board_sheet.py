@@ -9,6 +9,8 @@ from server.board_sheet import board_pdf, paper_for
 from vision.calibration.board import Board, BoardFinder
 
 POINT = 25.4e-3 / 72.0
+MEAN_WIDTH = 0.5
+"""Of Helvetica's letters in English text, over their size."""
 PIXEL = 0.25e-3
 """Of the page as it is drawn here, m."""
 
@@ -50,6 +52,20 @@ def test_the_ruler_is_100_mm_long_and_lies_below_the_board():
     assert lengths.max() == pytest.approx(0.100, abs=1e-6)
     board_bottom = numbers(r"^([\d. ]+) re$", pdf)[:, 1].min()
     assert lines[0][lengths.argmax(), 1] < board_bottom - 0.005
+
+
+@pytest.mark.parametrize("board", [Board(4, 4, 0.003), Board(6, 6, 0.010), Board(), Board(40, 40, 0.1)])
+def test_ruler_and_words_are_on_the_sheet_however_small_the_board(board: Board):
+    pdf = board_pdf(board).decode("ascii")
+    width = numbers(r"/MediaBox \[0 0 ([\d. ]+)\]", board_pdf(board))[0, 0]
+    texts = re.findall(r"/F1 ([\d.]+) Tf ([\d.]+) [\d.]+ Td \((.*)\) Tj", pdf)
+    assert len(texts) == 3
+    for size, left, words in texts:
+        end = float(left) + MEAN_WIDTH * float(size) * len(words)
+        assert float(left) * POINT >= 0.010
+        assert end * POINT <= width - 0.010
+    ruler = numbers(r"m ([\d.]+ [\d.]+) l S$", board_pdf(board))[:12]
+    assert ruler[:, 0].max() <= width - 0.009
 
 
 def test_four_ticks_show_the_middle_of_the_board():

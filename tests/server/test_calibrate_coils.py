@@ -6,18 +6,19 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
+from control.axes import AXES
 from control.calibration.bench import Bench, BenchSettings
 from control.calibration.windings import check_windings
-from control.coils import AXES
 from control.link.messages import BoardCode
 from control.safety import Refused
 from control.simulation.board import TwinBoard
-from server.assembly import Machine, build_machine, coil_set
+from server.assembly import Machine, build_machine
 from server.cli import app
 from server.commands.calibrate_windings import steady_coils
 from server.commands.held_coil import Held, HeldCoil
 from server.rig_file import load_rig_file
 from server.settings import RigFile
+from server.settings_in_si import coil_set
 
 TRUE_GAINS = [1.12, 0.93, 1.05]
 

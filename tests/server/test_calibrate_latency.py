@@ -15,12 +15,13 @@ from control.runs import Choice, RunRequest, Selection
 from control.safety import Refused
 from control.snapshot import Snapshot
 from server.assembly import build_machine
+from server.camera_sections import CameraSection
 from server.cli import app
 from server.diagnosis.latency import examine
 from server.headless import run_headless
 from server.latency_calibration import Latency, calibrate_latency
 from server.rig_file import load_rig_file
-from server.settings import CameraSection, EstimatorSection, LinkSection, RigFile
+from server.settings import EstimatorSection, LinkSection, RigFile
 
 WITHIN = 0.002
 """The latency is found as exactly as this, s."""

@@ -7,6 +7,7 @@ import base64
 import contextlib
 import math
 import tomllib
+from collections.abc import Callable
 from pathlib import Path
 
 import cv2
@@ -33,7 +34,7 @@ class Bench:
     """A served rig with its file."""
 
     def __init__(self, at, rig: Rig, store: RigStore) -> None:
-        self.rig, self.store, self.path = rig, store, store.path
+        self.rig, self.path = rig, store.path
         self.api = httpx.AsyncClient(base_url=at.url + "/api/v1", timeout=PATIENCE)
 
     async def get(self, what: str):
@@ -72,8 +73,7 @@ class Bench:
 
 
 @contextlib.asynccontextmanager
-async def bench(serve, path: Path, make=RigStore):
-    store = make(path)
+async def bench(serve, store: RigStore):
     rig = Rig(build_machine(store.settings, realtime=True))
     changes = RigChanges(rig, store, lambda settings: settings)
     async with serve(create_app(rig, changes=changes)) as at:
@@ -86,7 +86,7 @@ async def bench(serve, path: Path, make=RigStore):
 async def here(serve, tmp_path: Path):
     path = tmp_path / "rig.toml"
     path.write_text(COMMENTED)
-    async with bench(serve, path) as one:
+    async with bench(serve, RigStore(path)) as one:
         yield one
 
 
@@ -353,7 +353,9 @@ async def test_colours_that_cannot_be_saved_are_not_used_either(here):
 class Meanwhile(RigStore):
     """A rig file during whose saving something else happens."""
 
-    event = staticmethod(lambda: None)
+    def __init__(self, path: Path) -> None:
+        super().__init__(path)
+        self.event: Callable[[], object] = lambda: None
 
     def commit(self, staged, plan) -> None:
         self.event()
@@ -363,17 +365,18 @@ class Meanwhile(RigStore):
 async def test_a_rig_armed_while_its_colours_could_not_be_saved_says_that_they_are_not_in_the_file(
     serve, tmp_path
 ):
-    async with bench(serve, tmp_path / "rig.toml", Meanwhile) as one:
+    store = Meanwhile(tmp_path / "rig.toml")
+    async with bench(serve, store) as one:
         (previous_of(one.path) / "in the way").mkdir(parents=True)
         await one.ready()
         loop = asyncio.get_running_loop()
-        one.store.event = lambda: asyncio.run_coroutine_threadsafe(one.rig.arm(), loop).result(PATIENCE)
+        store.event = lambda: asyncio.run_coroutine_threadsafe(one.rig.arm(), loop).result(PATIENCE)
         wider = {**RED, "value": [50, 255]}
         refused = await one.change(colour=wider)
         assert refused.status_code == 409
         assert "values that are not in its file" in refused.json()["detail"]
         assert (await one.get("/vision"))["colour"] == wider == one.in_use()
-        one.store.event = lambda: None
+        store.event = lambda: None
         await one.api.post("/disarm")
         previous_of(one.path).joinpath("in the way").rmdir()
         previous_of(one.path).rmdir()
@@ -383,9 +386,10 @@ async def test_a_rig_armed_while_its_colours_could_not_be_saved_says_that_they_a
 
 async def test_an_edit_on_the_disk_while_a_change_is_made_is_not_overwritten(serve, tmp_path):
     edited = "# my own hand\n[vision]\nvalue = [70, 255]\n"
-    async with bench(serve, tmp_path / "rig.toml", Meanwhile) as one:
+    store = Meanwhile(tmp_path / "rig.toml")
+    async with bench(serve, store) as one:
         await one.ready()
-        one.store.event = lambda: one.path.write_text(edited)
+        store.event = lambda: one.path.write_text(edited)
         refused = await one.change(colour=BLUE)
         assert refused.status_code == 409
         assert "reload it first" in refused.json()["detail"]

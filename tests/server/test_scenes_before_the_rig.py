@@ -9,7 +9,7 @@ from control.model import Tracking
 from control.snapshot import RigState
 from server.settings import RigFile
 from tests.faults.fault_bench import FaultBench, fault_bench
-from vision.simulated.scenes import FOR_ANY_LENS
+from vision.simulated.scene_names import FOR_ANY_LENS
 
 FEW = ("exposure_steps", "everything")
 MANY = ("second_robot", "larger_twin", "standing_twins")

@@ -13,8 +13,10 @@ from numpy.typing import NDArray
 from scripted_scene import OPTICS
 
 from control.model import Body, pivot_point
+from vision.camera_model import CameraModel
 from vision.simulated.props import Moment, Setup
-from vision.simulated.scenes import FOR_ANY_LENS, SCENES, SHIPPED, Scene, Shown, Stage, play
+from vision.simulated.scene_names import FOR_ANY_LENS
+from vision.simulated.scenes import SCENES, SHIPPED, Scene, Shown, Stage, play
 from vision.simulated.video import VideoError, truth_beside, write_video
 from vision.simulated.walking import RANGE, Stride, Walk
 
@@ -24,6 +26,11 @@ SECONDS = 2.0
 
 def shown(name: str, seed: int = 3, frames: int = 24, *, robot: bool = True) -> list[Shown]:
     return list(play(SCENES[name], seed, frames, robot=robot))
+
+
+def test_the_names_known_without_opencv_are_those_of_the_scenes_that_leave_the_lens_alone():
+    usual = CameraModel.looking_down()
+    assert tuple(name for name, scene in SCENES.items() if scene.optics == usual) == FOR_ANY_LENS
 
 
 def looks_like_the_robot(image: NDArray, scene: Scene) -> NDArray:

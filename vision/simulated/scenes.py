@@ -217,6 +217,3 @@ SCENES: Mapping[str, Scene] = MappingProxyType(
     }
 )
 """By name."""
-
-FOR_ANY_LENS = tuple(name for name, scene in SCENES.items() if scene.optics == CameraModel.looking_down())
-"""Those that are not about the lens, and may be played in front of any simulated camera."""

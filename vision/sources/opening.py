@@ -8,6 +8,7 @@ from typing import Protocol
 from control.model import CameraNote, Frame
 from vision.sources import network
 from vision.sources.addresses import NETWORK, device_of, playback_of, shown, split
+from vision.sources.decoders import quieten
 from vision.sources.image_folder import ImageFolder
 from vision.sources.live import LiveCamera
 from vision.sources.recorded import RecordedCamera
@@ -16,6 +17,8 @@ from vision.sources.v4l import V4lCamera
 from vision.sources.video_file import VideoFile
 
 __all__ = ["Camera", "CameraError", "CameraRequest", "open_camera"]
+
+quieten()
 
 
 class Camera(Protocol):

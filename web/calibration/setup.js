@@ -28,7 +28,8 @@ export const change = (part) => get().setup && set({ setup: { ...get().setup, ..
 
 export function openSetup() {
   set({ setup: CLOSED });
-  for (const name of Object.keys(SOURCES)) learn(name);
+  learn("cameras");
+  learnOfRig();
 }
 
 export const closeSetup = () => set({ setup: null });
@@ -40,10 +41,18 @@ export function goTo(step) {
   change({ step, errors: Object.fromEntries(unread), done: {} });
 }
 
-/** Reads one of the answers again; what cannot be read is said at its place. */
+/** Name of an answer -> number of the newest question, and of the newest one that was answered. */
+const asked = {};
+const answered = {};
+
+/** Reads one of the answers again; what cannot be read is said at its place. A late answer to an earlier question
+    does not count any more. */
 export async function learn(name) {
+  const turn = (asked[name] = (asked[name] ?? 0) + 1);
   try {
     const answer = await read(SOURCES[name]);
+    if (turn < answered[name]) return;
+    answered[name] = turn;
     change(name === "calibration" ? { calibration: answer, board: answer.session.board_shown } : { [name]: answer });
   } catch (problem) {
     if (!(problem instanceof Problem)) throw problem;
@@ -79,10 +88,16 @@ export async function doing(place, words, call) {
 export async function saving(place, words, call) {
   const answer = await doing(place, words, call);
   if (answer === null) return null;
-  const rig = await read("/rig");
-  set({ rig });
-  change({ saved: valuesOf(rig), done: { [place]: "saved" } });
+  const rig = await readRig();
+  change({ saved: rig && valuesOf(rig), done: { [place]: "saved" } });
   return answer;
+}
+
+/** The rig's values and file for the whole page; null when the server does not answer, which the page says. */
+async function readRig() {
+  const rig = await read("/rig").catch(() => null);
+  if (rig) set({ rig });
+  return rig;
 }
 
 /** A rig's values as text, without what is said of its file. */
@@ -91,11 +106,11 @@ const valuesOf = ({ file, ...values }) => JSON.stringify(values);
 /** The rig file as it was before the last save; not once somebody else has saved after that. */
 export async function undo(place) {
   const answer = await doing(place, "Undoing", async () => {
-    if (valuesOf(await read("/rig")) !== get().setup.saved) throw new Problem(ELSEWHERE);
+    if (valuesOf(await read("/rig")) !== get().setup?.saved) throw new Problem(ELSEWHERE);
     return post("/rig/undo");
   });
   if (answer === null) return;
-  set({ rig: await read("/rig") });
+  await readRig();
   note("done", place, "undone");
 }
 

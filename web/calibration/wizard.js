@@ -30,7 +30,11 @@ function Panel() {
   const page = useRef(null);
   const rig = useStore((state) => state.rig);
   useEffect(() => title.current?.focus(), []);
-  useEffect(() => void learnOfRig(), [rig]);
+  const known = useRef(rig);
+  useEffect(() => {
+    if (known.current !== rig) learnOfRig();
+    known.current = rig;
+  }, [rig]);
   useEffect(() => {
     const leave = () => clearPlate({ keepalive: true });
     addEventListener("pagehide", leave);

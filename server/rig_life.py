@@ -1,0 +1,249 @@
+"""The rig's life: the loop in a background task, what it shows to whoever watches, and its end.
+
+Everything that may block (camera, OpenCV, serial port) and everything that changes the loop runs on one
+dedicated thread, one thing after the other; the event loop only awaits it. An emergency stop alone goes
+straight to the link.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import logging
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+from typing import Any, TypeVar
+
+from control.coils import CoilSet
+from control.model import Frame
+from control.news import Announcement
+from control.runs import Selection
+from control.safety import Refused
+from control.simulation.faults.injection import Faults
+from control.snapshot import RigState, Snapshot
+from server.assembly import Machine, build_machine
+from server.custom_trajectories import CustomTrajectories
+from server.event_log import EventLog
+from server.exchange import Build
+from server.rig_thread import RigThread
+from server.run_list import RunList
+from server.settings import RigFile
+from server.streams import Publisher
+from server.trail import Trail
+from server.watchdog import Hang, Watchdog, stopped
+
+T = TypeVar("T")
+
+log = logging.getLogger(__name__)
+
+FRAME_TIMEOUT = 0.034
+"""A tick happens at least this often, frame or not, s: the third without a frame finds the camera dead (102 ms)."""
+LAST_TURN = 2.0
+"""At the end an exchange that goes on is waited for, but not for ever, s (gone within 5 s, faults.md row 16)."""
+
+
+class RigLife:
+    """One rig, opened: start it, watch it, stop it. `server.rig.Rig` can be asked for something, too."""
+
+    def __init__(self, machine: Machine, build: Build | None = None) -> None:
+        """build: makes another machine when settings are changed; by default like `machine`, in real time."""
+        self._machine = machine
+        self._build = build or (lambda settings: build_machine(settings, realtime=True))
+        self._loop = machine.loop
+        self._thread = RigThread()
+        self._task: asyncio.Task[None] | None = None
+        self._watchdog = Watchdog(lambda: self._loop.deciding)
+        self._stops = 0
+        self._lost = ""
+        self._trail = Trail()
+        self._watchers: list[Callable[[Snapshot], None]] = []
+        self.frame: Frame | None = None
+        self.snapshot: Snapshot = self._loop.tick(None, machine.camera.now())
+        self.selection = Selection()
+        self.runs = RunList()
+        self._log = EventLog()
+        self.updates: Publisher[Snapshot] = Publisher()
+        self.custom_trajectories = CustomTrajectories()
+
+    @property
+    def machine(self) -> Machine:
+        """The parts as they are now; another object after each exchange, so do not keep it."""
+        return self._machine
+
+    @property
+    def settings(self) -> RigFile:
+        return self._machine.settings
+
+    @property
+    def coils(self) -> CoilSet:
+        return self._machine.coils
+
+    @property
+    def faults(self) -> Faults | None:
+        """What is injected into a simulated rig; None on a real one."""
+        return self._machine.faults
+
+    @property
+    def events(self) -> Sequence[Announcement]:
+        """What has happened, oldest first."""
+        return self._log.entries
+
+    @property
+    def announcements(self) -> Publisher[dict[str, Any]]:
+        """What clients are told as it comes: events, runs, changes of the selection and of the rig."""
+        return self._log.messages
+
+    @property
+    def is_lost(self) -> bool:
+        """No machine is open: an exchange failed both ways."""
+        return bool(self._lost)
+
+    @property
+    def hangs(self) -> bool:
+        """The loop's thread does not come back."""
+        return self._thread.hangs
+
+    @property
+    def failure(self) -> BaseException | None:
+        """What ended the background task, if anything did."""
+        if self._task is None or not self._task.done() or self._task.cancelled():
+            return None
+        return self._task.exception()
+
+    async def start(self) -> None:
+        """Open the link and start the loop; a board or a camera that is not there yet is waited for, disarmed."""
+        await self._thread.begin(lambda: self._machine.open(patiently=True, camera_may_come=True))
+        self._task = asyncio.create_task(self._run(), name="control loop")
+
+    async def stop(self) -> None:
+        """Zero the coils, end the loop and close everything; safe to call twice."""
+        self.stop_coils()
+        self.updates.close()
+        self.announcements.close()
+        if self._task is not None:
+            self._task.cancel()
+            await asyncio.gather(self._task, return_exceptions=True)  # what it failed with has been told of
+        with contextlib.suppress(Refused):
+            async with self._thread.turn(LAST_TURN):
+                await asyncio.to_thread(self._close)
+                return
+        await asyncio.to_thread(self._close)
+
+    def stop_coils(self) -> None:
+        """Zero now; for signal handlers."""
+        self._stops += 1
+        self._machine.stop_coils()
+
+    def _close(self) -> None:
+        self._machine.camera.close()
+        self._thread.shutdown()
+        self._machine.close()
+
+    async def _run(self) -> None:
+        try:
+            while True:
+                async with self._thread.turn():
+                    await self._step()
+        except asyncio.CancelledError:
+            raise
+        except BaseException as error:
+            self._fail(error)
+            raise
+
+    async def _step(self) -> None:
+        if self._lost:
+            await asyncio.sleep(FRAME_TIMEOUT)
+            return
+        tick = self._thread.begin(self._one_tick)
+        hang = await self._watchdog.wait(tick)
+        if hang is not None:
+            self._hang(hang)
+        self.snapshot = await tick
+        self._thread.hangs = False
+        self._tell()
+
+    def _fail(self, error: BaseException) -> None:
+        """The loop is broken for good: zero current, and say so to everybody who watches."""
+        self._machine.stop_coils()
+        log.exception("the control loop failed")
+        self._show_fault(f"the control loop failed ({error!r}); restart pivotrig")
+
+    def _show_fault(self, reason: str) -> None:
+        self.snapshot = replace(self.snapshot, rig=RigState.FAULT, reason=reason)
+        self.updates.publish(self.snapshot)
+
+    def _hang(self, hang: Hang) -> None:
+        """The loop does not come back: zero current, and say so; a loop that does come back latches the same."""
+        self._loop.estop(hang.code, hang.reason)
+        log.error("%s", hang.reason)
+        self._thread.hangs = True
+        if self.snapshot.run is not None:
+            self.runs.abort(self.snapshot.run.id, hang.reason)
+        self.snapshot = stopped(self.snapshot, hang)
+        self.announce("error", hang.code, hang.reason)
+        self._log.tell_runs(self.runs.take_news())
+        self.updates.publish(self.snapshot)
+
+    def _one_tick(self) -> Snapshot:
+        frame = self._machine.camera.read(FRAME_TIMEOUT)
+        if frame is not None:
+            self.frame = frame
+        for note in self._machine.camera.take_notes():
+            self._loop.announce(note.severity, "camera", note.message)
+        snapshot = self._loop.tick(frame, self._machine.camera.now())
+        self._show(snapshot)
+        return snapshot
+
+    # Watchers ------------------------------------------------------------------------------------
+
+    @contextlib.contextmanager
+    def watched(self, watcher: Callable[[Snapshot], None]) -> Iterator[None]:
+        """`watcher` is told of every tick meanwhile, on the rig's thread; none is left out, as with `updates`."""
+        self._watchers = [*self._watchers, watcher]
+        try:
+            yield
+        finally:
+            self._watchers = [each for each in self._watchers if each is not watcher]
+
+    def _show(self, snapshot: Snapshot) -> None:
+        for watcher in self._watchers:
+            try:
+                watcher(snapshot)
+            except Exception:  # whoever watches may fail, control does not notice (faults.md, rule 8)
+                log.exception("a watcher of the rig failed, and is told of nothing more")
+                self._watchers = [each for each in self._watchers if each is not watcher]
+
+    # News ----------------------------------------------------------------------------------------
+
+    def _tell(self) -> None:
+        """Publish the newest snapshot, and what the loop has announced since the last one."""
+        self._trail.follow(self.snapshot)
+        self.updates.publish(self.snapshot)
+        for announcement in self._loop.take_announcements():
+            self._log.add(announcement)
+        for ended in self._loop.take_ended():
+            self.runs.end(ended)
+        self._log.tell_runs(self.runs.take_news())
+
+    def announce(self, severity: str, code: str, message: str) -> None:
+        """Put something into the event log and tell everybody who watches."""
+        self._log.add(Announcement(self.snapshot.time, severity, code, message))
+
+    # Between two ticks ---------------------------------------------------------------------------
+
+    async def _ask(self, request: Callable[[], T]) -> T:
+        """Carry a request out between two ticks and publish what became of it; raises `Refused`."""
+        if self.failure is not None or self._lost:
+            raise Refused(self.snapshot.reason)
+        answer = await self._thread.call(request, lambda: self.snapshot.reason)
+        with contextlib.suppress(Refused):  # a tick that hangs has been told of; the request is carried out
+            self.snapshot = await self._thread.call(self._look_again, lambda: self.snapshot.reason)
+        self._tell()
+        return answer
+
+    def _look_again(self) -> Snapshot:
+        return self._loop.tick(None, self._machine.camera.now())
+
+    async def between_ticks(self, work: Callable[[], T]) -> T:
+        """Do something to the rig's parts on the thread that owns them; raises `Refused` when that hangs."""
+        return await self._ask(work)
