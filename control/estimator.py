@@ -52,6 +52,12 @@ class EstimatorSettings:
     lift_ratio: float = 3.2
     gait_model: GaitModel | None = None
 
+    def noise(self, elapsed: float, *, is_held: bool) -> tuple[float, float]:
+        """Variances of position, m^2, and heading, rad^2, that a robot at rest gathers in `elapsed` s."""
+        if is_held:
+            return self.drift_position**2 * elapsed, self.drift_heading**2 * elapsed
+        return self.free_position**2 * elapsed, self.free_heading**2 * elapsed
+
 
 @dataclass(frozen=True, slots=True)
 class Carried:
@@ -140,13 +146,13 @@ class Estimator:
             position_sigma=self.position_sigma,
             pivot=PIVOT_B if elevation > 0.0 else PIVOT_A,
             tilt=body_tilt(abs(elevation), lift_ratio),
-            heading_sigma=math.sqrt(max(self._filter.P[2, 2], 0.0)),
+            heading_sigma=self._filter.heading_sigma,
         )
 
     def correct(self, measurement: Measurement) -> bool:
         """Fuse a sighting made at the time of the last `expect`; False when the gate refuses it."""
-        z = np.array([measurement.pose.x, measurement.pose.y, measurement.pose.heading])
-        if not measurement.pose.is_finite or not self._filter.innovate(z) <= GATE:
+        pose = measurement.pose
+        if not pose.is_finite or not self._filter.innovate((pose.x, pose.y, pose.heading)) <= GATE:
             return False
         self._filter.fuse()
         self.last_accepted = measurement.captured_at
@@ -154,7 +160,7 @@ class Estimator:
 
     def distance(self, z: NDArray[np.float64]) -> float:
         """Squared Mahalanobis distance of a sighting (x, y, heading) from the prediction."""
-        return self._filter.innovate(z)
+        return self._filter.innovate(z.tolist())
 
     @property
     def grip(self) -> Grip:
@@ -164,7 +170,7 @@ class Estimator:
     def carry(self, time: float) -> Carried:
         """The estimate carried forward to `time` (s) through what the field has done since."""
         motion = self._motion(self._time, time)
-        (xx, _, xh), (_, yy, yh), (_, _, hh) = self._filter.P.tolist()
+        xx, _, xh, yy, yh, hh = self._filter.covariance
         # The diagonal of F P F' + Q, with F as in `PivotFilter.move`.
         variances = (
             xx - 2.0 * motion.dy * xh + motion.dy**2 * hh + motion.position_noise,
@@ -177,32 +183,28 @@ class Estimator:
     @property
     def position_sigma(self) -> float:
         """Standard deviation of the position at the filter's own time, along the worse axis, m."""
-        return math.sqrt(max(self._filter.P[0, 0], self._filter.P[1, 1], 0.0))
+        return self._filter.position_sigma
 
     @property
     def covariance(self) -> NDArray[np.float64]:
         """(3, 3) covariance of (x, y, heading) at the filter's own time, m^2, m rad, rad^2."""
         return self._filter.P
 
-    def _pose(self) -> Pose:
-        x, y, heading = self._filter.x.tolist()
-        return Pose(x, y, heading)
-
     def _motion(self, start: float, end: float) -> Motion:
         """The body's motion from `start` to `end` (s), as the field has led it."""
-        delay = self._settings.actuation_delay
-        departure, grip = self._pose(), self._grip
-        arrival, noise = departure, _Noise(self._settings, end - start, self._field.is_ready)
+        settings, grip = self._settings, self._grip
+        delay, elapsed = settings.actuation_delay, max(end - start, 0.0)
+        departure = arrival = Pose(*self._filter.mean)
+        position, heading = settings.noise(elapsed, is_held=self._field.is_ready)
         for turn in self._field.turns(start - delay, end - delay):
             held = grip.after(turn, self.half_play)
             if grip.pivot not in (None, turn.pivot):
                 arrival = self._landed(arrival, grip)
-                noise.switch()
+                position += settings.slip**2
             arrival = swing(arrival, turn.pivot, turn.angle + grip.slack - held.slack, self._length)
-            noise.turn(turn.angle, held.is_tight)
+            heading += ((settings.swing if held.is_tight else settings.loose) * turn.angle) ** 2
             grip = held
-        dx, dy = arrival.x - departure.x, arrival.y - departure.y
-        return Motion(arrival, grip, dx, dy, noise.position, noise.heading)
+        return Motion(arrival, grip, arrival.x - departure.x, arrival.y - departure.y, position, heading)
 
     def _landed(self, pose: Pose, grip: Grip) -> Pose:
         """What the switch away from the grip's pivot does on average, where that has been measured."""
@@ -220,20 +222,3 @@ class Motion:
     dy: float
     position_noise: float
     heading_noise: float
-
-
-class _Noise:
-    """Process noise gathered along one piece of motion."""
-
-    def __init__(self, settings: EstimatorSettings, elapsed: float, is_held: bool) -> None:
-        s, elapsed = settings, max(elapsed, 0.0)
-        self._settings = settings
-        self.position = (s.drift_position if is_held else s.free_position) ** 2 * elapsed
-        self.heading = (s.drift_heading if is_held else s.free_heading) ** 2 * elapsed
-
-    def turn(self, angle: float, is_tight: bool) -> None:
-        share = self._settings.swing if is_tight else self._settings.loose
-        self.heading += (share * angle) ** 2
-
-    def switch(self) -> None:
-        self.position += self._settings.slip**2

@@ -1,6 +1,6 @@
 """One tick: a frame in, a drive command out, one snapshot to everybody else.
 
-The loop has no clock and no thread of its own; its shell (`server.rig`, or a headless run) reads the camera
+The loop has no clock and no thread of its own; its shell (`server.rig_life`, or a headless run) reads the camera
 and hands every frame in together with the rig's time. All methods belong to one thread, but `estop`, which
 may come from any.
 """

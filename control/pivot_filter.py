@@ -1,11 +1,15 @@
 """filterpy's extended Kalman filter for a robot that is seen whole: every sighting is a pose (x, y, heading).
 
-The mean is predicted by the exact arc instead of a matrix product, and the measurement matrix is the identity.
-filterpy's own update is general and spends most of its time on copies and on finding that out; the one here is
-the same algebra for this case, to the last digits, in a third of the time.
+The mean is predicted by the exact arc instead of a matrix product, the measurement matrix is the identity, and the
+errors of a sighting's three numbers are independent, so that they can be taken in one after the other. filterpy's own
+methods are general and spend most of their time on copies and on small matrices; those here are the same algebra for
+this case, to the last digits, in plain numbers and a tenth of the time.
 """
 
 from __future__ import annotations
+
+import math
+from collections.abc import Sequence
 
 import numpy as np
 from filterpy.kalman import ExtendedKalmanFilter
@@ -14,58 +18,107 @@ from numpy.typing import NDArray
 from control.model import Pose, wrap
 
 Matrix = NDArray[np.float64]
-IDENTITY = np.eye(3)
+Triple = tuple[float, float, float]
+Covariance = tuple[float, float, float, float, float, float]
+"""The upper triangle xx, xy, xh, yy, yh, hh; m^2, m rad, rad^2."""
 
 
 class PivotFilter(ExtendedKalmanFilter):
-    """State and sighting: (x, y, heading), m and rad.  R: covariance of a sighting."""
+    """State and sighting: (x, y, heading), m and rad; `x` and `P` as filterpy has them.
+
+    sighting_noise: (3, 3) covariance of a sighting, diagonal.
+    """
 
     def __init__(self, sighting_noise: Matrix) -> None:
         super().__init__(dim_x=3, dim_z=3)
         self.R = sighting_noise
-        self.arrival = np.zeros(3)
-        self.F, self.Q = np.eye(3), np.zeros((3, 3))
+        self._noise: list[float] = np.diag(sighting_noise).tolist()
+        self._shift: Triple = (0.0, 0.0, 0.0)
+        self._fused: Covariance = self.covariance
 
-    def predict_x(self, u: object = 0) -> None:  # noqa: ARG002 (filterpy's signature)
-        self.x = self.arrival
+    @property
+    def x(self) -> Matrix:
+        return np.array(self.mean)
+
+    @x.setter
+    def x(self, x: Matrix) -> None:
+        first, second, third = np.ravel(x).tolist()
+        self.mean: Triple = (first, second, third)
+
+    @property
+    def P(self) -> Matrix:  # noqa: N802 (filterpy's name)
+        xx, xy, xh, yy, yh, hh = self.covariance
+        return np.array([[xx, xy, xh], [xy, yy, yh], [xh, yh, hh]])
+
+    @P.setter
+    def P(self, P: Matrix) -> None:  # noqa: N802
+        (xx, xy, xh), (_, yy, yh), (_, _, hh) = P.tolist()
+        self.covariance: Covariance = (xx, xy, xh, yy, yh, hh)
+
+    @property
+    def position_sigma(self) -> float:
+        """Standard deviation of the position along the worse axis, m."""
+        return math.sqrt(max(self.covariance[0], self.covariance[3], 0.0))
+
+    @property
+    def heading_sigma(self) -> float:
+        """Standard deviation of the heading, rad."""
+        return math.sqrt(max(self.covariance[5], 0.0))
 
     def move(self, arrival: Pose, motion: tuple[float, float], noise: tuple[float, float]) -> None:
-        """Predict: the arc leads to `arrival`.
+        """Predict: the arc leads to `arrival`; the covariance becomes F P F' + Q.
 
         motion: displacement (dx, dy), m. It is fixed in the body's frame, so it turns with the heading:
-        d(arrival)/d(departure) is the identity but for -dy and dx in the heading's column.
-        noise: variances of the process in position, m^2, and heading, rad^2.
+        F = d(arrival)/d(departure) is the identity but for -dy and dx in the heading's column.
+        noise: variances of the process in position, m^2, and heading, rad^2: the diagonal of Q.
         """
-        self.arrival = np.array([arrival.x, arrival.y, arrival.heading])
-        self.F[0, 2], self.F[1, 2] = -motion[1], motion[0]
-        self.Q[0, 0] = self.Q[1, 1] = noise[0]
-        self.Q[2, 2] = noise[1]
-        self.predict()
+        dx, dy = motion
+        xx, xy, xh, yy, yh, hh = self.covariance
+        moved_xh, moved_yh = xh - dy * hh, yh + dx * hh
+        self.mean = (arrival.x, arrival.y, arrival.heading)
+        self.covariance = (
+            xx - dy * (xh + moved_xh) + noise[0],
+            xy + dx * xh - dy * moved_yh,
+            moved_xh,
+            yy + dx * (yh + moved_yh) + noise[0],
+            moved_yh,
+            hh + noise[1],
+        )
 
-    def innovate(self, z: Matrix) -> float:
-        """Squared Mahalanobis distance of a sighting from the prediction; `fuse` then takes the sighting in."""
-        dx, dy, turn = (z - self.x).tolist()
-        turn = wrap(turn)
-        self.y = np.array([dx, dy, turn])
-        self.S = self.P + self.R
-        self.SI = _inverse(self.S)
-        return float(self.y @ self.SI @ self.y)
+    def innovate(self, sighting: Sequence[float]) -> float:
+        """Squared Mahalanobis distance of a sighting from the prediction; `fuse` then takes the sighting in.
+
+        One number after the other: each shifts the mean by its gain, takes its share from the covariance, and changes
+        what is expected of the next. A variance p that meets noise r leaves p r / (p + r), which stays positive
+        whatever is rounded.
+        """
+        x, y, heading = self.mean
+        xx, xy, xh, yy, yh, hh = self.covariance
+        noise_x, noise_y, noise_h = self._noise
+        ex, ey, eh = sighting[0] - x, sighting[1] - y, wrap(sighting[2] - heading)
+
+        total = xx + noise_x
+        gain, left = ex / total, noise_x / total
+        distance, dx, dy, dh = ex * gain, xx * gain, xy * gain, xh * gain
+        ey, eh = ey - dy, eh - dh
+        yy, yh, hh = yy - xy * xy / total, yh - xy * xh / total, hh - xh * xh / total
+        xx, xy, xh = xx * left, xy * left, xh * left
+
+        total = yy + noise_y
+        gain, left = ey / total, noise_y / total
+        distance, dx, dy, dh = distance + ey * gain, dx + xy * gain, dy + yy * gain, dh + yh * gain
+        eh -= yh * gain
+        xx, xh, hh = xx - xy * xy / total, xh - xy * yh / total, hh - yh * yh / total
+        xy, yy, yh = xy * left, yy * left, yh * left
+
+        total = hh + noise_h
+        gain, left = eh / total, noise_h / total
+        distance, dx, dy, dh = distance + eh * gain, dx + xh * gain, dy + yh * gain, dh + hh * gain
+        xx, xy, yy = xx - xh * xh / total, xy - xh * yh / total, yy - yh * yh / total
+        self._shift, self._fused = (dx, dy, dh), (xx, xy, xh * left, yy, yh * left, hh * left)
+        return distance
 
     def fuse(self) -> None:
-        """Correct the prediction by the sighting that `innovate` has looked at last.
-
-        The covariance in Joseph's form, (I - K) P (I - K)' + K R K', which stays positive whatever is rounded.
-        """
-        self.K = self.P @ self.SI
-        self.x = self.x + self.K @ self.y
-        left = IDENTITY - self.K
-        self.P = left @ self.P @ left.T + self.K @ self.R @ self.K.T
-
-
-def _inverse(matrix: Matrix) -> Matrix:
-    """Of a symmetric positive (3, 3) matrix, by its adjugate."""
-    (a, b, c), (_, d, e), (_, _, f) = matrix.tolist()
-    aa, bb, cc = d * f - e * e, c * e - b * f, b * e - c * d
-    scale = 1.0 / (a * aa + b * bb + c * cc)
-    dd, ee, ff = a * f - c * c, b * c - a * e, a * d - b * b
-    return scale * np.array([[aa, bb, cc], [bb, dd, ee], [cc, ee, ff]])
+        """Correct the prediction by the sighting that `innovate` has looked at last."""
+        (x, y, heading), (dx, dy, turn) = self.mean, self._shift
+        self.mean, self.covariance = (x + dx, y + dy, heading + turn), self._fused

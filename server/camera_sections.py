@@ -1,4 +1,4 @@
-"""The rig file's [camera] with its lens, plane and board: where pictures come from, and what a calibration has found."""
+"""The rig file's [camera]: where pictures come from, and the lens, plane and board of a calibration."""
 
 from __future__ import annotations
 
@@ -7,11 +7,12 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from server.section import NOT_MEASURED, Positive, Section
+from vision.sources.addresses import NETWORK
 
 SIMULATED_CAMERA = "simulated camera"
 """The identity of the camera that is none."""
-LIVE = ("v4l:", "rtsp:", "http:", "https:")
-"""How the addresses of cameras begin whose frames bear the time of their arrival; a recording has its own."""
+LIVE = NETWORK | {"v4l"}
+"""Schemes of cameras whose frames bear the time of their arrival; a recording has its own."""
 
 Pixels = Annotated[int, Field(ge=64, le=8192)]
 Identity = Annotated[str, Field(max_length=200)]

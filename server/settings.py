@@ -162,7 +162,7 @@ class RigFile(Section):
             return True
         if self.is_simulated:
             return self.simulation.stamps == "capture"
-        return not camera.uri.startswith(LIVE)
+        return camera.uri.partition(":")[0].lower() not in LIVE
 
     @property
     def subtracted_latency_ms(self) -> float:

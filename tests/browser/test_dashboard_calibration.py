@@ -126,44 +126,6 @@ def test_corners_are_set_and_moved_by_keys_alone(visit: Visit) -> None:
     expect(setup.get_by_role("region", name="Found")).to_contain_text("mm")
 
 
-def test_a_board_that_was_left_by_a_page_that_was_closed_can_be_taken_away(
-    visit: Visit, workshop: ServedRig
-) -> None:
-    page = visit.page
-    workshop.send("PUT", "/simulation/board", {"shown": True, "pose": "next"})
-    workshop.send("POST", "/estop")
-    setup = open_setup(page, "Camera")
-    setup.get_by_role("group", name="Printed board").get_by_role("button", name="Take the board away").click()
-    expect(setup.get_by_role("group", name="Printed board")).to_have_count(0)
-    eventually(lambda: workshop.ask("/state")["tracking"] == "locked", "the robot is seen again")
-
-    workshop.rest()
-    page.get_by_role("tab", name="Plane").click()
-    button(page, "Lay the printed board on the plate").click()
-    expect(button(page, "Take the board away")).to_be_visible()
-    page.reload()
-    eventually(lambda: workshop.ask("/state")["tracking"] == "locked", "a page that is left takes it away")
-
-
-def test_two_pages_see_each_other_s_saves_and_neither_undoes_the_other_s(
-    visit: Visit, workshop: ServedRig, open_tab: OpenTab
-) -> None:
-    page, other = visit.page, open_tab(workshop.url).page
-    workshop.send("PATCH", "/rig", {"name": "Bench 6"})
-    setup, watching = open_setup(page, "Plane"), open_setup(other, "Plane")
-    button(page, "Lay the printed board on the plate").click()
-    expect(button(page, "Take the board away")).to_be_visible()
-    button(page, "Look for the board").click()
-    button(page, "Save the plane").click()
-    expect(watching.get_by_role("region", name="Saved now")).to_contain_text("the printed board")
-    expect(other.get_by_role("tab", name="Plane")).to_contain_text("done")
-    workshop.send("PATCH", "/rig", {"name": "Bench 7"})
-    button(page, "Undo").click()
-    expect(setup.get_by_text("Somebody else has changed the rig file since")).to_be_visible()
-    assert workshop.ask("/rig")["name"] == "Bench 7"
-    assert visit.complaints == []
-
-
 def drag_a_corner(page: Page, rig: ServedRig) -> None:
     box = picture(page).bounding_box()
     assert box is not None
@@ -272,17 +234,6 @@ def test_of_two_robots_that_look_alike_a_click_says_which_one_it_is(
     assert distance_from(robot_place(workshop), place) < 3
 
 
-def test_without_a_connection_the_setup_is_out_of_reach_as_the_rest_of_the_page(
-    own_server: ServedRig, open_tab: OpenTab
-) -> None:
-    page = open_tab(own_server.url).page
-    open_setup(page, "Lens")
-    own_server.kill()
-    expect(page.get_by_role("alert")).to_contain_text("No connection")
-    expect(page.locator("main[inert] .wizard")).to_have_count(1)
-    expect(page.get_by_role("button", name="STOP", exact=True)).to_be_enabled()
-
-
 FAINT_TEXT = """() => {
   const channels = (colour) => colour.match(/[\\d.]+/g).map(Number);
   const light = ([r, g, b]) => [r, g, b].map((c) => c / 255)
@@ -308,6 +259,20 @@ FAINT_TEXT = """() => {
 """Texts of the panel with less contrast than WCAG asks for."""
 
 
+def test_on_a_phone_on_its_side_the_state_and_stop_are_free(dashboard: Visit) -> None:
+    page = dashboard.page
+    page.set_viewport_size({"width": 844, "height": 390})
+    open_setup(page, "Lens")
+    word, figures, stop = (
+        page.locator(f".bar {part}").bounding_box() for part in (".state-word", ".vitals", ".stop")
+    )
+    assert word is not None
+    assert figures is not None
+    assert stop is not None
+    assert word["x"] + word["width"] <= figures["x"]
+    assert stop["x"] + stop["width"] <= 844
+
+
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_on_a_phone_each_step_fits_its_width_and_its_texts_can_be_read(
     served: ServedRig, open_tab: OpenTab, scheme: Literal["light", "dark"]
@@ -324,4 +289,6 @@ def test_on_a_phone_each_step_fits_its_width_and_its_texts_can_be_read(
             summary.click()
         assert page.evaluate("document.documentElement.scrollWidth") <= 390
         assert page.evaluate(FAINT_TEXT) == []
+        setup.get_by_role("button", name="Back").scroll_into_view_if_needed()
+        expect(picture(page)).to_be_in_viewport(ratio=0.99)
         expect(page.get_by_role("button", name="STOP", exact=True)).to_be_in_viewport()

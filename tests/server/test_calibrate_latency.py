@@ -136,8 +136,9 @@ def test_nothing_is_driven_through_real_coils_without_consent(tmp_path: Path) ->
 
 
 def test_the_doctor_says_that_a_real_camera_s_latency_was_never_measured() -> None:
+    for uri in ("v4l://0", "rtsp://camera/1", "rtsps://camera/1", "HTTP://camera/1"):
+        assert examine(real(uri=uri)).level == "warning", uri
     unknown = examine(real(uri="v4l://0"))
-    assert unknown.level == "warning"
     assert "calibrate latency --save" in unknown.advice
     known = examine(
         real(uri="v4l://0", latency_ms=31.0, latency_source="measured 2026-05-01, standard error 1.1 ms")

@@ -100,7 +100,9 @@ async def test_the_latency_is_measured_shown_and_saved_when_the_rig_is_disarmed(
     assert load_rig_file(bench.path).camera.latency_source.startswith("measured 20")
     assert "# kept" in bench.path.read_text()
     tick = await bench.until("/state", lambda state: state["camera"]["rate_Hz"] is not None)
-    assert tick["camera"]["rate_Hz"] == pytest.approx(60.0, abs=2.0)
+    assert tick["camera"]["rate_Hz"] == pytest.approx(60.0, abs=3.0), (
+        "the first interval has whole milliseconds"
+    )
     assert tick["camera"]["latency_ms"] == pytest.approx(saved["in_use"]["latency_ms"], abs=1.0)
 
 

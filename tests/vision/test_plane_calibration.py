@@ -215,10 +215,10 @@ def test_whatever_is_clicked_gives_a_plane_or_words(full: bool):
     for _ in range(400 if full else 60):
         count = int(chance.integers(4, 9))
         pixels = chance.uniform(-1e4, 1e4, (count, 2)), 200.0 * chance.integers(0, 3, (count, 2))
-        places = chance.uniform(-2.0, 2.0, (count, 2)), chance.integers(-1, 2, (count, 2)) * 1e-6
+        places = chance.uniform(-2.0, 2.0, (count, 2)), 1e-6 * chance.integers(-1, 2, (count, 2))
         for seen, known in itertools.product(pixels, places):
             try:
-                fit = plane_from_marks(Lens.of(STRONG), seen.astype(float), known, HALF)
+                fit = plane_from_marks(Lens.of(STRONG), seen.astype(float), known.astype(float), HALF)
             except CalibrationError:
                 continue
             assert math.isfinite(fit.residual)

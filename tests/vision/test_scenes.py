@@ -278,10 +278,6 @@ def test_a_small_robot_is_20_px_long() -> None:
     assert 0.010 * optics.scale_at(0.0, 0.0, 0.003) == pytest.approx(20.0, abs=0.5)
 
 
-def test_only_scenes_that_are_not_about_the_lens_are_for_any_camera() -> None:
-    assert set(SCENES) - set(FOR_ANY_LENS) == {"strong_lens", "small_robot"}
-
-
 def test_the_shipped_colour_is_that_of_the_default_scene() -> None:
     assert SCENES["clean"].colour == SHIPPED
 

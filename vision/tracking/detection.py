@@ -67,13 +67,18 @@ class Mask(Protocol):
 class Candidate:
     """A blob before it is measured: outline (px of its window), area (px^2), box (px of the picture).
 
-    others: the outlines of everything else of the robot's colour in the window, of whatever size.
+    company: the outlines of everything of the robot's colour in the window, of whatever size, its own included.
     """
 
     outline: NDArray[np.int32]
     area: float
     box: Window
-    others: tuple[NDArray[np.int32], ...] = ()
+    company: tuple[NDArray[np.int32], ...] = ()
+
+    @property
+    def others(self) -> tuple[NDArray[np.int32], ...]:
+        """Without its own."""
+        return tuple(each for each in self.company if each is not self.outline)
 
     @property
     def centre(self) -> tuple[float, float]:
@@ -119,7 +124,8 @@ def find(image: Image, window: Window, colour: Mask, region: RegionFilter, step:
     if step > 1:
         small = (max((u1 - u0) // step, 1), max((v1 - v0) // step, 1))
         part = cv2.resize(part, small, interpolation=cv2.INTER_NEAREST)
-    outlines, _ = cv2.findContours(colour.mask(part), cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
+    found, _ = cv2.findContours(colour.mask(part), cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
+    outlines = tuple(np.asarray(outline, np.int32) for outline in found)
     areas = [_area(outline) * step * step for outline in outlines]
     passing = [index for index, area in enumerate(areas) if region.passes(area)]
     largest = sorted(passing, key=lambda index: -areas[index])[:MOST_BLOBS]
@@ -131,12 +137,13 @@ def _area(outline: MatLike) -> float:
     return cv2.contourArea(outline) + 0.5 * len(outline) + 1.0
 
 
-def _candidate(index: int, outlines: Sequence[MatLike], area: float, window: Window, step: int) -> Candidate:
-    outline = np.asarray(outlines[index], np.int32)
+def _candidate(
+    index: int, outlines: tuple[NDArray[np.int32], ...], area: float, window: Window, step: int
+) -> Candidate:
+    outline = outlines[index]
     u, v, width, height = cv2.boundingRect(outline)
     left, top = window[0] + u * step, window[1] + v * step
-    others = tuple(np.asarray(other, np.int32) for other in (*outlines[:index], *outlines[index + 1 :]))
-    return Candidate(outline, area, (left, top, left + width * step, top + height * step), others)
+    return Candidate(outline, area, (left, top, left + width * step, top + height * step), outlines)
 
 
 def measure(image: Image, window: Window, candidate: Candidate, colours: RobotColours | None = None) -> Blob:
@@ -148,7 +155,8 @@ def measure(image: Image, window: Window, candidate: Candidate, colours: RobotCo
     u0, v0, u1, v1 = widened(candidate.box, SURROUNDINGS, image)
     patch, offset = image[v0:v1, u0:u1], (window[0] - u0, window[1] - v0)
     inside = _filled([candidate.outline], patch, offset)
-    others = _filled(candidate.others, patch, offset) if candidate.others else None
+    company = candidate.others
+    others = _filled(company, patch, offset) if company else None
     mark = None if colours is None else _mark(patch, inside, colours)
     found = cover(patch, Masks(inside, others, mark))
     moments = cv2.moments(found.share if found.hidden is None else completed(found.share, found.hidden))

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 
 from vision.tracking.windows import Place
@@ -82,7 +82,8 @@ class Question:
         unlike: Sequence[float],
         span: float,
     ) -> None:
-        self._robot, self._rivals, self._blobs, self._unlike = robot, rivals, blobs, unlike
+        self._robot, self._blobs, self._unlike = robot, blobs, unlike
+        self._rivals = [_as_vague(rival, robot) for rival in rivals]
         self._span = span
         self._nobody = 4.0 * math.log(span) + SUDDEN
 
@@ -141,3 +142,9 @@ class Question:
             return cheapest
 
         return best(0, frozenset(range(len(self._blobs))) - taken)
+
+
+def _as_vague(rival: Owner, robot: Owner) -> Owner:
+    """Once the robot may be anywhere, so may be a rival that was out of sight as well: whoever of the two is seen
+    then must not be told by how long ago the other was."""
+    return rival if rival.in_view or math.isfinite(robot.sigma) else replace(rival, sigma=math.inf)

@@ -10,19 +10,24 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from vision.tracking.detection import Blob
 from vision.tracking.identity import MOST, Owner
-from vision.tracking.windows import Outline, Place
+from vision.tracking.windows import Place
 
 STILL = 0.12
 """Standard deviation of a place that was seen just now, body lengths: a coarse search sees it to a grid point."""
 WANDER = 0.25
 """It grows by so many body lengths per second; the gate is 3.7 of it, so nearly a length per second is covered
 (half a length at 100 deg/s, the fastest swing, is 0.87 of it)."""
+CARRIED = 0.5
+"""The same of another robot, body lengths per second: somebody may be moving it while the robot is covered by it."""
 ELSEWHERE_AFTER = 1.5
 """A robot that was not seen for so long may be anywhere, s: half as long again as a hand covers it in passing."""
+FORGOTTEN_AFTER = 5.0
+"""What it looks like is remembered for so long, s: a hand that goes uncovers it bit by bit, and a part of it is not
+taken for the whole. After that it may be another robot, or other light."""
 
 LOOKS_GATE = 18.5
 """99.9 % point of chi-squared with four degrees of freedom: length, width, area and colour."""
@@ -42,9 +47,9 @@ STEADY = 0.15
 """Two sightings agree when they are not further apart than that, body lengths."""
 
 
-def sigma_after(gap: float, length: float) -> float:
+def sigma_after(gap: float, length: float, wander: float = WANDER) -> float:
     """Standard deviation of a place `gap` seconds after it was seen, in the body length's unit; inf: anywhere."""
-    return length * (STILL + WANDER * gap) if 0.0 <= gap <= ELSEWHERE_AFTER else math.inf
+    return length * (STILL + wander * gap) if 0.0 <= gap <= ELSEWHERE_AFTER else math.inf
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,40 +79,43 @@ class Looks:
 
     def tilted(self, tilt: float) -> Looks:
         """What is seen from above of a body with these looks that stands on one end, tilt in rad."""
+        if tilt == 0.0:
+            return self
         short = math.cos(tilt)
-        return replace(
-            self, length=self.length * short, area=self.area * short, slack=TILT_DOUBT * (1.0 - short)
+        return Looks(
+            self.length * short, self.width, self.area * short, self.shares, TILT_DOUBT * (1.0 - short)
         )
 
     def flat(self, tilt: float) -> Looks:
         """What a body that is seen tilted looks like when it lies flat."""
+        if tilt == 0.0:
+            return self
         short = math.cos(tilt)
-        return replace(self, length=self.length / short, area=self.area / short)
+        return Looks(self.length / short, self.width, self.area / short, self.shares, self.slack)
 
     def unlike(self, seen: Looks) -> float:
         """How many standard deviations lie between these, expected, and what is seen, squared."""
+        doubt = self.slack**2
         return (
-            math.log(self.length / seen.length) ** 2 / (LENGTH_SPREAD**2 + self.slack**2)
+            math.log(self.length / seen.length) ** 2 / (LENGTH_SPREAD**2 + doubt)
             + (math.log(self.width / seen.width) / WIDTH_SPREAD) ** 2
-            + math.log(self.area / seen.area) ** 2 / (AREA_SPREAD**2 + self.slack**2)
-            + sum((one - two) ** 2 for one, two in zip(self.shares, seen.shares, strict=True))
-            / COLOUR_SPREAD**2
+            + math.log(self.area / seen.area) ** 2 / (AREA_SPREAD**2 + doubt)
+            + math.dist(self.shares, seen.shares) ** 2 / COLOUR_SPREAD**2
         )
 
     def learnt(self, new: Looks) -> Looks:
         """The remembered looks after another sighting."""
-        blue, green, red = (
-            one + LEARNING * (two - one) for one, two in zip(self.shares, new.shares, strict=True)
-        )
+        (blue, green, red), (new_blue, new_green, new_red) = self.shares, new.shares
         return Looks(
             self.length + LEARNING * (new.length - self.length),
             self.width + LEARNING * (new.width - self.width),
             self.area + LEARNING * (new.area - self.area),
-            (blue, green, red),
+            (
+                blue + LEARNING * (new_blue - blue),
+                green + LEARNING * (new_green - green),
+                red + LEARNING * (new_red - red),
+            ),
         )
-
-    def outline(self, axis: float) -> Outline:
-        return Outline(self.length, self.width, axis)
 
 
 @dataclass(frozen=True, slots=True)
@@ -126,7 +134,7 @@ class Memory:
 
     def looks_at(self, time: float) -> Looks | None:
         """What it must look like at a time, s; None when that is forgotten."""
-        return self.looks if time - self.seen_at <= ELSEWHERE_AFTER else None
+        return self.looks if time - self.seen_at <= FORGOTTEN_AFTER else None
 
 
 class Steadiness:
@@ -179,7 +187,9 @@ class Company:
         """What each of them may be taken for now, in the order of `recognise`."""
         return [
             Owner(
-                rival.place, sigma_after(now - rival.seen_at, self._length), rival.seen_at >= self._looked_at
+                rival.place,
+                sigma_after(now - rival.seen_at, self._length, CARRIED),
+                in_view=rival.seen_at >= self._looked_at,
             )
             for rival in self._rivals
         ]

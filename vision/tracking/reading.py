@@ -44,7 +44,15 @@ class Glance:
             abs(self.mass - other.mass) <= SAME_SHAPE * other.mass
             and abs(mine.long - its.long) <= 2.0 * SAME_SHAPE * its.long
             and abs(mine.short - its.short) <= 2.0 * SAME_SHAPE * its.short
-            and all(abs(one - two) <= SAME_COLOUR for one, two in zip(self.colour, other.colour, strict=True))
+            and self._is_of_the_colour(other.colour)
+        )
+
+    def _is_of_the_colour(self, colour: Colour) -> bool:
+        (blue, green, red), (its_blue, its_green, its_red) = self.colour, colour
+        return (
+            abs(blue - its_blue) <= SAME_COLOUR
+            and abs(green - its_green) <= SAME_COLOUR
+            and abs(red - its_red) <= SAME_COLOUR
         )
 
 
@@ -114,15 +122,15 @@ def _is_there(ellipse: Ellipse, window: Window, blob: Blob) -> bool:
 def _as_before(last: Blob, ellipse: Ellipse, window: Window) -> Blob:
     """The robot of the last close look, where it is now."""
     corners = ellipse.corners(window[0], window[1])
-    us, vs = zip(*corners, strict=True)
+    (u0, v0), (u1, v1), (u2, v2), (u3, v3) = corners
+    box = (
+        math.floor(min(u0, u1, u2, u3)),
+        math.floor(min(v0, v1, v2, v3)),
+        math.ceil(max(u0, u1, u2, u3)) + 1,
+        math.ceil(max(v0, v1, v2, v3)) + 1,
+    )
+    centre = window[0] + ellipse.u, window[1] + ellipse.v
+    # In the order of its fields: naming all of them takes as long as working them out.
     return Blob(
-        area=last.area,
-        mean_colour=last.mean_colour,
-        ground=last.ground,
-        end=last.end,
-        centre=(window[0] + ellipse.u, window[1] + ellipse.v),
-        axis=ellipse.axis,
-        elongation=ellipse.elongation,
-        corners=corners,
-        box=(math.floor(min(us)), math.floor(min(vs)), math.ceil(max(us)) + 1, math.ceil(max(vs)) + 1),
+        centre, ellipse.axis, last.area, ellipse.elongation, corners, box, last.mean_colour, last.ground, last.end
     )

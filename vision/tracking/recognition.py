@@ -77,19 +77,22 @@ class Recogniser:
         return _found(verdict, near, blobs, whole, robot)
 
     def search(self, view: View, robot: Robot) -> Found:
-        """The robot anywhere in the picture."""
+        """The robot anywhere in the picture.
+
+        A blob that covers the robot's place without being the robot may be the robot and another one together: it
+        says nothing about where that one is.
+        """
         candidates = self._seeker.everywhere(view.image)
         rivals = self._company.owners(view.at)
-        near = _nearest(candidates, robot.owner, rivals)
-        blobs = [
-            self._seeker.beneath(view.image, each.centre) if robot.owner.reaches(each.centre) else None
-            for each in near
-        ]
+        nearest = _nearest(candidates, robot.owner, rivals)
+        near, blobs = self._closely(view, nearest, robot.owner)
         verdict = self._verdict(robot, rivals, near, blobs)
-        self._company.recognise(
-            {rival: near[number].centre for rival, number in verdict.rivals.items()}, view.at
-        )
-        return _found(verdict, near, blobs, candidates, robot)
+        found = _found(verdict, near, blobs, [*near, *_without(candidates, nearest)], robot)
+        pairs = {rival: near[number] for rival, number in verdict.rivals.items()}
+        if found.is_covered:
+            pairs = {rival: each for rival, each in pairs.items() if not _holds(each.box, robot.owner.place)}
+        self._company.recognise({rival: each.centre for rival, each in pairs.items()}, view.at)
+        return found
 
     def watch(self, view: View, found: Found) -> None:
         """The whole picture, for who else is there while the robot is known."""
@@ -105,18 +108,34 @@ class Recogniser:
         The middle of the blob there, if it has the robot's shape; two that touch are one blob, whose middle is
         neither's, and then the point itself is all that is known.
         """
-        places = [candidate.centre for candidate in self._seeker.everywhere(view.image)]
-        nearest = min(places, key=lambda place: math.dist(place, told), default=told)
-        blob = self._seeker.beneath(view.image, nearest)
-        is_meant = blob is not None and math.dist(blob.centre, told) <= POINTED * self._length
-        pointed = (
-            Memory(blob.centre, view.at)
-            if blob is not None and is_meant
-            else Memory(told, view.at, vagueness=VAGUE * self._length)
+        candidates = self._seeker.everywhere(view.image)
+        there = Owner(told, POINTED * self._length, in_view=True)
+        near, blobs = self._closely(view, _nearest(candidates, there, ()), there)
+        places = [each.centre if blob is None else blob.centre for each, blob in zip(near, blobs, strict=True)]
+        places += [each.centre for each in candidates if not there.reaches(each.centre)]
+        meant = min(
+            (blob for blob in blobs if blob is not None),
+            key=lambda blob: math.dist(blob.centre, told),
+            default=None,
         )
-        others = [place for place in places if math.dist(place, pointed.place) > POINTED * self._length]
+        if meant is not None and math.dist(meant.centre, told) <= POINTED * self._length:
+            pointed, apart = Memory(meant.centre, view.at), SAME
+        else:
+            pointed, apart = Memory(told, view.at, vagueness=VAGUE * self._length), POINTED
+        others = [place for place in places if math.dist(place, pointed.place) > apart * self._length]
         self._company.meet(others, view.at, everywhere=True)
         return pointed
+
+    def _closely(
+        self, view: View, near: Sequence[Candidate], owner: Owner
+    ) -> tuple[list[Candidate], list[Blob | None]]:
+        """Blobs of the coarse grid, those within reach of an owner looked at closely."""
+        looked: dict[Window, tuple[Candidate, Blob | None]] = {}
+        for each in near:
+            parts = self._seeker.beneath(view.image, each) if owner.reaches(each.centre) else []
+            looked |= {part.box: (part, blob) for part, blob in parts or [(each, None)]}
+        kept = list(looked.values())[:MOST]
+        return [part for part, _ in kept], [blob for _, blob in kept]
 
     def _verdict(
         self, robot: Robot, rivals: Sequence[Owner], near: Sequence[Candidate], blobs: Sequence[Blob | None]
@@ -137,6 +156,10 @@ def _nearest(candidates: Sequence[Candidate], robot: Owner, rivals: Sequence[Own
         return is_known, robot.offset(place)
 
     return list(candidates) if len(candidates) <= 1 else sorted(candidates, key=order)[:MOST]
+
+
+def _without(candidates: Sequence[Candidate], some: Sequence[Candidate]) -> list[Candidate]:
+    return [each for each in candidates if not any(each is one for one in some)]
 
 
 def _is_surely(blob: Blob, robot: Robot, rivals: Sequence[Owner]) -> bool:

@@ -7,7 +7,7 @@ import math
 from vision.tracking.colour import Image, RobotColours
 from vision.tracking.detection import Blob, Candidate, RegionFilter, Window, find, measure
 from vision.tracking.reading import BlobReader
-from vision.tracking.windows import Place, touches, window_around
+from vision.tracking.windows import SPARE, Place, touches, window_around
 
 COARSE_WIDTH = 2.5
 """The whole frame is searched on the coarsest grid that leaves the body this wide, in grid points."""
@@ -15,6 +15,8 @@ COARSE_AREA_TOLERANCE = 2.0
 """On that grid an area may be wrong by this factor."""
 LENGTH_TOLERANCE = 1.5
 """A blob is not longer and not shorter than the robot by more than this factor: tilt, lens and blur change less."""
+MOST_MERGED = 3.0
+"""A blob of the coarse grid that is longer than so many bodies is no row of robots."""
 HALF = 0.6
 """Half side of the window that holds a body lying any way, body lengths."""
 
@@ -53,9 +55,18 @@ class Seeker:
             return None if cut else self._at(image, candidate.centre, 0.5 * self._length)
         return self._shaped(self._reader.read(image, window, candidate))
 
-    def beneath(self, image: Image, place: Place) -> Blob | None:
-        """The blob at a place of `everywhere`, which is known to the coarse grid, px."""
-        return self._at(image, place, 2.0 * self._step)
+    def beneath(self, image: Image, coarse: Candidate) -> list[tuple[Candidate, Blob | None]]:
+        """What a blob of `everywhere` is when it is looked at closely: on the coarse grid two side by side are one.
+
+        None for what has not the robot's shape.
+        """
+        u0, v0, u1, v1 = coarse.box
+        if not max(u1 - u0, v1 - v0) <= MOST_MERGED * self._length:
+            return []
+        half = 0.5 * (u1 - u0) + 2.0 * self._step + SPARE, 0.5 * (v1 - v0) + 2.0 * self._step + SPARE
+        window = window_around(coarse.centre, half, self._whole)
+        whole = [each for each in self.within(image, window) if not touches(each.box, window)]
+        return [(each, self._shaped(measure(image, window, each, self._colours))) for each in whole]
 
     def _at(self, image: Image, place: Place, reach: float) -> Blob | None:
         """The blob at a place that is known to `reach`, px."""

@@ -17,7 +17,7 @@ from vision.tracking.reasons import AGAIN, OTHER_SIZE, reason_for
 from vision.tracking.recognition import Found, Recogniser, Robot, View
 from vision.tracking.seeking import Seeker
 from vision.tracking.settings import RED, TrackerSettings
-from vision.tracking.windows import SIGMAS, SPARE, Place, window_around
+from vision.tracking.windows import SIGMAS, SPARE, Place, half_extent, window_around
 
 __all__ = ["RED", "ColourTracker", "TrackerSettings"]
 
@@ -176,8 +176,8 @@ class ColourTracker:
         """Holds the whole body when its centre is within `reach` px of a place and A lies `ahead` (px) of it."""
         half_u = half_v = UNKNOWN_HALF * self._length
         if self._memory is not None and self._memory.looks is not None:
-            outline = self._memory.looks.outline(math.atan2(ahead[1], ahead[0]))
-            half_u, half_v = outline.half_extent(heading_sigma)
+            looks = self._memory.looks
+            half_u, half_v = half_extent(looks.length, looks.width, ahead, heading_sigma)
         return window_around(place, (reach + half_u + SPARE, reach + half_v + SPARE), self._whole)
 
     def _missed(self, view: View, found: Found, *, is_anywhere: bool) -> Observation:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 from vision.tracking.coverage import RIM
 from vision.tracking.detection import Window
@@ -17,23 +16,17 @@ SIGMAS = 4.0
 """The window holds the body when its heading is that many standard deviations off."""
 
 
-@dataclass(frozen=True, slots=True)
-class Outline:
-    """A body lying in the picture. length, width: px.  axis: direction of the long axis in the picture, rad."""
+def half_extent(length: float, width: float, ahead: Place, axis_sigma: float) -> Place:
+    """Half of the extent along u and v, px, of a body of this length and width, px.
 
-    length: float
-    width: float
-    axis: float
-
-    def half_extent(self, axis_sigma: float) -> Place:
-        """Half of its extent along u and v, px, when the axis is known to `axis_sigma`, rad."""
-        play = math.sin(SIGMAS * axis_sigma) if SIGMAS * axis_sigma <= 0.5 * math.pi else 1.0
-        along_u = min(abs(math.cos(self.axis)) + play, 1.0)
-        along_v = min(abs(math.sin(self.axis)) + play, 1.0)
-        return (
-            0.5 * (self.length * along_u + self.width * along_v),
-            0.5 * (self.length * along_v + self.width * along_u),
-        )
+    ahead: a vector along its long axis in the picture, which is known to `axis_sigma`, rad.
+    """
+    play = SIGMAS * axis_sigma
+    play = math.sin(play) if play <= 0.5 * math.pi else 1.0
+    du, dv = ahead
+    size = math.hypot(du, dv) or 1.0
+    along_u, along_v = min(abs(du) / size + play, 1.0), min(abs(dv) / size + play, 1.0)
+    return 0.5 * (length * along_u + width * along_v), 0.5 * (length * along_v + width * along_u)
 
 
 def window_around(place: Place, half: Place, whole: Window) -> Window:

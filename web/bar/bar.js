@@ -4,13 +4,20 @@ import { KeySheet } from "../keys/keys.js";
 import { stopNow } from "../live/actions.js";
 import { useStore } from "../store.js";
 import { quantity } from "../units.js";
-import { html } from "../view.js";
+import { html, useEffect, useRef } from "../view.js";
 
 export function Bar() {
   const tick = useStore((state) => state.tick);
   const rig = useStore((state) => state.rig);
+  const bar = useRef(null);
+  useEffect(() => {
+    const tell = () => document.documentElement.style.setProperty("--bar-height", `${bar.current.offsetHeight}px`);
+    const watch = new ResizeObserver(tell);
+    watch.observe(bar.current);
+    return () => watch.disconnect();
+  }, []);
   return html`
-    <header class="bar">
+    <header class="bar" ref=${bar}>
       <div class="bar-name">
         <h1>${rig?.name ?? "pivotrig"}</h1>
         ${(tick?.simulated ?? rig?.simulated) && html`<span class="badge" title="No coil is real: camera, robot and board are simulated">SIM</span>`}
