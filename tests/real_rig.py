@@ -22,7 +22,7 @@ def real_rig(folder: Path) -> Iterator[Path]:
     with started("control.simulation.board_process", "--control-port", "0", "--linger", "60") as (_, line):
         port = line.split()[1].removeprefix("serial=")
         rig_file.write_text(
-            f'name = "Bench 3"\n[camera]\nuri = "file://{film}"\nsize_px = [{SIZE}, {SIZE}]\nrate_Hz = 30.0\n'
+            f'name = "Bench 3"\n[camera]\nuri = "file://{film}?loop=1"\nsize_px = [{SIZE}, {SIZE}]\nrate_Hz = 30.0\n'
             f'[link]\nport = "{port}"\n'
         )
         yield rig_file

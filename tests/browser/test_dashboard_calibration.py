@@ -203,7 +203,7 @@ def test_a_measured_delay_is_shown_with_its_uncertainty_and_saved_once_disarmed(
     workshop.send("PATCH", "/rig", {"simulation": {"stamps": "arrival"}})
     eventually(lambda: workshop.ask("/state")["reason"] == "ready to arm", "the rebuilt rig is ready")
     workshop.send("POST", "/arm")
-    workshop.send("POST", "/calibration/latency", {"turns": 4})
+    workshop.send("POST", "/calibration/latency", {"turns": 8})
     setup = open_setup(page, "Robot")
     delay = setup.get_by_role("region", name="Camera delay")
     expect(delay).to_contain_text(re.compile(r"\d\.\d ± \d+\.\d ms"), timeout=A_WHILE)

@@ -15,6 +15,7 @@ from server.optics import assumed_model, board_of
 from server.rig import Rig
 from server.settings import RigFile
 from vision.calibration.plane import plane_from_corners
+from vision.simulated.camera import SyntheticCamera
 from vision.simulated.held_board import Holding, shown_board
 
 pytestmark = pytest.mark.anyio
@@ -76,6 +77,7 @@ async def test_the_board_can_be_taken_away_in_any_state_and_whoever_asks_is_told
 async def test_a_board_that_moves_is_no_view_and_no_plane(serve, tmp_path):
     async with wizard(serve, tmp_path / "rig.toml") as page:
         camera, settings = page.rig.machine.camera, page.rig.settings.camera
+        assert isinstance(camera, SyntheticCamera)
         views = [
             shown_board(
                 board_of(settings), assumed_model(settings), Holding((0.0, 0.0, 0.0), (shift, 0.0), 0.0)
