@@ -22,6 +22,9 @@ from control.snapshot import Vector
 
 GATE = 16.27
 """99.9 % point of chi-squared with three degrees of freedom."""
+SWITCH_DOUBT = 0.005
+"""The moment of a pivot switch is known to this, s, as latency and the coils' delay are; a slip that is seen in the
+picture before or after the expected one would be refused from then on."""
 LIFT_FIELD = 0.010
 """The field at which the lift ratio is given, T: it grows with the field."""
 
@@ -196,15 +199,22 @@ class Estimator:
         delay, elapsed = settings.actuation_delay, max(end - start, 0.0)
         departure = arrival = Pose(*self._filter.mean)
         position, heading = settings.noise(elapsed, is_held=self._field.is_ready)
+        switches = 0
         for turn in self._field.turns(start - delay, end - delay):
             held = grip.after(turn, self.half_play)
             if grip.pivot not in (None, turn.pivot):
                 arrival = self._landed(arrival, grip)
-                position += settings.slip**2
+                switches += 1
             arrival = swing(arrival, turn.pivot, turn.angle + grip.slack - held.slack, self._length)
             heading += ((settings.swing if held.is_tight else settings.loose) * turn.angle) ** 2
             grip = held
+        position += (switches or self._may_switch(start - delay, end - delay)) * settings.slip**2
         return Motion(arrival, grip, arrival.x - departure.x, arrival.y - departure.y, position, heading)
+
+    def _may_switch(self, start: float, end: float) -> bool:
+        """Whether the robot may have taken its other end between two instants, s."""
+        before, after = start - SWITCH_DOUBT, end + SWITCH_DOUBT
+        return self._field.pivot_at(before) != self._field.pivot_at(after)
 
     def _landed(self, pose: Pose, grip: Grip) -> Pose:
         """What the switch away from the grip's pivot does on average, where that has been measured."""

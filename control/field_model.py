@@ -198,6 +198,10 @@ class FieldModel:
         earlier, later, share = self._about(time)
         return earlier.elevation + share * (later.elevation - earlier.elevation)
 
+    def pivot_at(self, time: float) -> Pivot:
+        """The end that the field pressed down at a recent `time`."""
+        return PIVOT_B if self.elevation_at(time) > 0.0 else PIVOT_A
+
     def strength_at(self, time: float) -> float:
         """How strong the field was at a recent `time`, T, as it comes up from zero after the arm edge."""
         if not self._on:
@@ -217,7 +221,10 @@ class FieldModel:
         return only, only, 0.0
 
     def turns(self, start: float, end: float) -> list[Turn]:
-        """The pieces of motion between two recent instants (s), oldest first."""
+        """The pieces of motion between two recent instants (s), oldest first.
+
+        A piece that `end` cuts presses on the end that it presses on by then: the ramp through zero is one piece.
+        """
         inner: list[Corner] = []
         for corner in reversed(self._corners):
             if corner.time <= start:
@@ -227,7 +234,7 @@ class FieldModel:
         heading = self.heading_at(start)
         for corner in reversed(inner):
             if corner.time >= end:
-                pieces.append(Turn(self.heading_at(end) - heading, corner.pivot))
+                pieces.append(Turn(self.heading_at(end) - heading, self.pivot_at(end)))
                 break
             pieces.append(Turn(corner.heading - heading, corner.pivot))
             heading = corner.heading

@@ -179,9 +179,11 @@ class CameraModel:
 
     def _undistort_one(self, seen_p: float, seen_q: float) -> tuple[float, float]:
         """The same for one point, several times in each frame: by the ratio that the lens makes (OpenCV's iteration),
-        which needs half as many rounds."""
+        which needs half as many rounds. It ends where the next round would move the point less than the tolerance:
+        each round's move is the same share of the last one."""
         k1, k2, p1, p2, k3 = self.distortion
         p, q = seen_p, seen_q
+        last = 0.0
         for _ in range(LENS_ITERATIONS):
             pp, pq, qq = p * p, 2.0 * p * q, q * q
             r2 = pp + qq
@@ -190,7 +192,9 @@ class CameraModel:
                 break
             next_p = (seen_p - p1 * pq - p2 * (r2 + 2.0 * pp)) / radial
             next_q = (seen_q - p1 * (r2 + 2.0 * qq) - p2 * pq) / radial
-            if abs(next_p - p) + abs(next_q - q) < LENS_TOLERANCE:
-                return next_p, next_q
+            move = abs(next_p - p) + abs(next_q - q)
             p, q = next_p, next_q
+            if move < LENS_TOLERANCE or move * move < LENS_TOLERANCE * last:
+                break
+            last = move
         return p, q

@@ -181,3 +181,24 @@ def test_a_pivot_switch_is_allowed_its_slip_wherever_the_frames_fall(cut: float)
     estimator.expect(0.11 + cut)
     estimator.expect(0.25)
     assert estimator.covariance[0, 0] > SETTINGS.slip**2
+
+
+@pytest.mark.parametrize("late", [-0.004, 0.0, 0.004])
+@pytest.mark.parametrize("phase", [0.0, 0.004, 0.008, 0.012, 0.016])
+def test_a_slip_is_believed_although_the_moment_of_the_switch_is_not_known_to_the_millisecond(
+    phase: float, late: float
+) -> None:
+    """Pictures before the slip must not make the filter so sure that it refuses all pictures after it."""
+    field = FieldModel(0.05, 0.1)
+    field.start(0.0, 0.0, PIVOT_A, 0.4, 0.001)
+    field.advance(0.1)
+    field.command(PIVOT_B, 0.4, 0.0, 0.0)
+    field.advance(0.4)
+    estimator = Estimator(SETTINGS, field, LENGTH)
+    estimator.start(sighting(Pose(0.0, 0.0, 0.0), 0.05))
+    slip_at = 0.1 + 0.025 + SETTINGS.actuation_delay + late
+    for frame in range(10):
+        time = 0.06 + phase + frame / 60
+        estimator.expect(time)
+        x = 0.6 * SETTINGS.slip if time >= slip_at else 0.0
+        assert estimator.correct(sighting(Pose(x, 0.0, 0.0), time)), f"at {time:.3f} s"

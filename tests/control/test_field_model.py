@@ -135,6 +135,16 @@ def test_the_pivot_changes_half_way_through_the_ramp() -> None:
     assert field.pivot == PIVOT_B
 
 
+def test_a_piece_of_motion_that_ends_before_the_ramp_has_passed_zero_presses_on_the_old_end() -> None:
+    field = FieldModel(RAMP, SLEW)
+    field.start(0.0, 0.0, PIVOT_A, TILT, 0.010)
+    field.advance(0.4)
+    field.command(PIVOT_B, TILT, 0.0, 0.0)
+    field.advance(0.4 + RAMP)
+    assert {turn.pivot for turn in field.turns(0.3, 0.4 + 0.49 * RAMP)} == {PIVOT_A}
+    assert field.turns(0.3, 0.4 + 0.51 * RAMP)[-1].pivot == PIVOT_B
+
+
 def test_pieces_of_motion_add_up_to_the_whole_whatever_the_interval() -> None:
     field = FieldModel(RAMP, SLEW)
     field.start(0.0, 0.0, PIVOT_A, TILT, 0.010)

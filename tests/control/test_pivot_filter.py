@@ -54,6 +54,6 @@ def test_looking_at_a_sighting_changes_neither_state_nor_covariance() -> None:
     ours = PivotFilter(NOISE)
     ours.x, ours.P = np.array([0.1, 0.2, 0.3]), covariance(np.random.default_rng(4))
     before = ours.x.copy(), ours.P.copy()
-    ours.innovate(np.array([0.5, 0.5, 0.5]))
+    ours.innovate((0.5, 0.5, 0.5))
     assert np.array_equal(ours.x, before[0])
     assert np.array_equal(ours.P, before[1])

@@ -126,6 +126,18 @@ def test_a_coarse_grid_finds_the_place_and_size_roughly():
     assert candidate.area == pytest.approx(sole_blob(image).area, rel=0.4)
 
 
+@pytest.mark.parametrize("step", [2, 4, 8])
+def test_a_coarse_look_sees_the_same_however_the_picture_lies_in_memory(step: int):
+    image = Painter(OPTICS, SCENE).paint(anywhere(np.random.default_rng(13)), 0)
+    within = np.zeros((480, 700, 3), np.uint8)
+    within[:, :640] = image
+    seen, cut = (
+        find(each, WHOLE, RED, REGION.scaled(1.0, 2.0), step=step) for each in (image, within[:, :640])
+    )
+    assert len(seen) == 1
+    assert [(each.box, each.area) for each in seen] == [(each.box, each.area) for each in cut]
+
+
 @pytest.mark.parametrize(
     ("colour", "hue"), [((200, 60, 40), 235), ((40, 160, 40), 120), ((30, 200, 220), 57)]
 )

@@ -57,6 +57,13 @@ def test_a_rival_in_view_stays_what_it_is_although_the_robot_may_be_anywhere():
     assert ask(anywhere, [known(FAR)], [FAR, THERE]) == Verdict(1, (), {0: 0})
 
 
+def test_a_rival_out_of_sight_owns_no_blob_any_more_once_the_robot_may_be_anywhere():
+    """The other one walked off while nobody could tell them apart; what stands here is the robot as likely as not."""
+    verdict = ask(Owner(HERE, math.inf, in_view=False), [known(HERE, 15.0, in_view=False)], [HERE, FAR])
+    assert verdict.robot is None
+    assert set(verdict.doubtful) == {0, 1}
+
+
 def test_a_rival_that_was_hidden_with_the_robot_may_be_what_comes_out():
     hidden = known(HERE, 20.0, in_view=False), [known(THERE, 20.0, in_view=False)]
     assert ask(*hidden, [(120.0, 100.0)]).doubtful == (0,)

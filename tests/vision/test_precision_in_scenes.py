@@ -15,6 +15,9 @@ from vision.tracking.tracker import ColourTracker, TrackerSettings
 
 POSITION_LIMIT, POSITION_LIMIT_WHEN_HARD = 0.08, 0.15
 """Mean distance from the truth, px, with nothing but sensor noise, and in the hard scenes."""
+ANSWERED, ANSWERED_IN_GLARE = 0.95, 0.90
+"""Share of the pictures: a robot that walks into a lamp's mirror image, as one of eight does, is refused while half
+of it is white."""
 HEADING_LIMIT = 0.4
 """Mean, degrees."""
 PLACE_SIGMA, HEADING_SIGMA = 2.0e-4, 0.05
@@ -59,7 +62,7 @@ def test_in_every_scene_the_pose_is_true_to_a_fraction_of_a_pixel_and_of_a_degre
     scene, (seeds, frames) = SCENES[name], (8, 120) if full else (2, 30)
     found = [error for seed in range(seeds) for error in errors(scene, seed, frames)]
     measured = [error for error in found if error is not None]
-    assert len(measured) >= 0.95 * len(found)
+    assert len(measured) >= (ANSWERED_IN_GLARE if name == "glare" else ANSWERED) * len(found)
     limit = POSITION_LIMIT_WHEN_HARD if scene.is_hard else POSITION_LIMIT
     assert np.mean([error.position for error in measured]) <= limit
     assert np.mean([error.heading for error in measured]) <= HEADING_LIMIT

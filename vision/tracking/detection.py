@@ -27,6 +27,8 @@ LEAST_MARK = 0.03
 LEAST_MARK_PLACE = 0.5
 """A mark on an end lies at least this far from the middle, in the body's radii of gyration along its axis (the end
 itself is at 1.7)."""
+WORD = 4
+"""Bytes that are read at once."""
 MOST_BLOBS = 64
 """A picture with more blobs than this, such as noise in the dark, yields the largest ones."""
 
@@ -122,14 +124,24 @@ def find(image: Image, window: Window, colour: Mask, region: RegionFilter, step:
     u0, v0, u1, v1 = window
     part = image[v0:v1, u0:u1]
     if step > 1:
-        small = (max((u1 - u0) // step, 1), max((v1 - v0) // step, 1))
-        part = cv2.resize(part, small, interpolation=cv2.INTER_NEAREST)
+        part = _thinned(part, step)
     found, _ = cv2.findContours(colour.mask(part), cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
     outlines = tuple(np.asarray(outline, np.int32) for outline in found)
     areas = [_area(outline) * step * step for outline in outlines]
     passing = [index for index, area in enumerate(areas) if region.passes(area)]
     largest = sorted(passing, key=lambda index: -areas[index])[:MOST_BLOBS]
     return [_candidate(index, outlines, areas[index], window, step) for index in largest]
+
+
+def _thinned(image: Image, step: int) -> Image:
+    """Every n-th pixel of every n-th row; with a fourth channel that says nothing, where that is quicker."""
+    height, width = image.shape[:2]
+    if step % WORD == 0 and height % step == width % step == 0 and image.flags.c_contiguous:
+        # Rows first, in one go through the memory; then a pixel with the next one's first byte, four at once.
+        rows = image[::step].copy()
+        image = rows.reshape(len(rows), -1, WORD)
+    small = max(width // step, 1), max(height // step, 1)
+    return cv2.resize(image, small, interpolation=cv2.INTER_NEAREST)
 
 
 def _area(outline: MatLike) -> float:

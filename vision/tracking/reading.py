@@ -97,9 +97,9 @@ class BlobReader:
 def _row_of(blob: Blob) -> MatLike:
     contrast = Contrast.between(blob.mean_colour, blob.ground)
     low, high = COLOURED_EDGE if contrast.is_coloured else (DARK_EDGE, LIT_EDGE)
-    row = contrast.row * np.float32(255.0 / (high - low))
-    row[0, 3] -= 255.0 * low / (high - low)
-    return row
+    scale = 255.0 / (high - low)
+    blue, green, red, offset = contrast.row[0].tolist()
+    return np.array([[scale * blue, scale * green, scale * red, scale * (offset - low)]], np.float32)
 
 
 def _seen(image: Image, window: Window, row: MatLike) -> Glance | None:
@@ -121,16 +121,25 @@ def _is_there(ellipse: Ellipse, window: Window, blob: Blob) -> bool:
 
 def _as_before(last: Blob, ellipse: Ellipse, window: Window) -> Blob:
     """The robot of the last close look, where it is now."""
+    u, v = window[0] + ellipse.u, window[1] + ellipse.v
     corners = ellipse.corners(window[0], window[1])
-    (u0, v0), (u1, v1), (u2, v2), (u3, v3) = corners
+    (u0, v0), (u1, v1) = corners[:2]  # the other two lie opposite
+    half_u, half_v = max(abs(u0 - u), abs(u1 - u)), max(abs(v0 - v), abs(v1 - v))
     box = (
-        math.floor(min(u0, u1, u2, u3)),
-        math.floor(min(v0, v1, v2, v3)),
-        math.ceil(max(u0, u1, u2, u3)) + 1,
-        math.ceil(max(v0, v1, v2, v3)) + 1,
+        math.floor(u - half_u),
+        math.floor(v - half_v),
+        math.ceil(u + half_u) + 1,
+        math.ceil(v + half_v) + 1,
     )
-    centre = window[0] + ellipse.u, window[1] + ellipse.v
     # In the order of its fields: naming all of them takes as long as working them out.
     return Blob(
-        centre, ellipse.axis, last.area, ellipse.elongation, corners, box, last.mean_colour, last.ground, last.end
+        (u, v),
+        ellipse.axis,
+        last.area,
+        ellipse.elongation,
+        corners,
+        box,
+        last.mean_colour,
+        last.ground,
+        last.end,
     )

@@ -45,7 +45,7 @@ class Found:
 
     robot: the robot's blob, if it is told.  others: places of all other blobs that are wholly in view, px.
     doubtful: places of those among which it is not told.
-    is_covered: where it should be is something of its colour that does not look like it.
+    is_covered: where it should be is something of its colour that does not look like it; or that is the only one.
     """
 
     robot: Blob | None
@@ -111,7 +111,9 @@ class Recogniser:
         candidates = self._seeker.everywhere(view.image)
         there = Owner(told, POINTED * self._length, in_view=True)
         near, blobs = self._closely(view, _nearest(candidates, there, ()), there)
-        places = [each.centre if blob is None else blob.centre for each, blob in zip(near, blobs, strict=True)]
+        places = [
+            each.centre if blob is None else blob.centre for each, blob in zip(near, blobs, strict=True)
+        ]
         places += [each.centre for each in candidates if not there.reaches(each.centre)]
         meant = min(
             (blob for blob in blobs if blob is not None),
@@ -188,17 +190,18 @@ def _found(
 ) -> Found:
     """Only a robot that looks like itself is measured."""
     chosen = None if verdict.robot is None else near[verdict.robot]
-    blob = None if verdict.robot is None else blobs[verdict.robot]
-    if _unlike(blob, robot.looks) >= LOOKS_GATE:
-        blob = None
+    seen = None if verdict.robot is None else blobs[verdict.robot]
+    blob = seen if _unlike(seen, robot.looks) < LOOKS_GATE else None
     is_bounded, place = math.isfinite(robot.owner.sigma), robot.owner.place
     return Found(
         robot=blob,
         others=tuple(candidate.centre for candidate in candidates if candidate is not chosen),
         doubtful=tuple(near[number].centre for number in verdict.doubtful),
         is_covered=blob is None
-        and is_bounded
-        and (chosen is not None or any(_holds(each.box, place) for each in near)),
+        and (
+            seen is not None
+            or (is_bounded and (chosen is not None or any(_holds(each.box, place) for each in near)))
+        ),
     )
 
 

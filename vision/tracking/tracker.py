@@ -26,6 +26,9 @@ FLOOR = 0.04
 the estimator's model does not know."""
 HURRY = 0.25
 """Share of its way since the last sighting by which a robot may be off its prediction: a fast one needs more room."""
+FARTHEST = 10.0
+"""No robot is further from the coils' centre or from its place, m; what a lens' model says of places beyond all
+bounds is nonsense."""
 UNKNOWN_HALF = 0.6
 """Half side of a window that holds a body of unknown heading, body lengths."""
 FIRST_SIGHTINGS = 3
@@ -107,8 +110,10 @@ class ColourTracker:
         self._memory, self._told = self._recogniser.pointed_out(view, told), None
 
     def _heeded(self, expected: Expectation | None) -> Expectation | None:
-        """None for an expectation in NaN, and for that of a robot which the operator has said to be another one."""
-        if expected is None or not (expected.pose.is_finite and math.isfinite(expected.position_sigma)):
+        """None for an expectation that cannot be, and for that of a robot which the operator has said to be another."""
+        if expected is None or not expected.pose.is_finite or not 0.0 <= expected.position_sigma <= FARTHEST:
+            return None
+        if not expected.pose.distance_to(0.0, 0.0) <= FARTHEST:
             return None
         if self._is_told and self._memory is not None:
             self._is_told = math.dist(self._place_of(expected), self._memory.place) > 0.5 * self._length

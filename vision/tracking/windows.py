@@ -39,6 +39,9 @@ def window_around(place: Place, half: Place, whole: Window) -> Window:
 
 def _span(place: float, half: float, limit: int) -> tuple[int, int]:
     """From a place less half to a place plus half, within 0..limit; a far place yields the nearest pixel."""
+    low, high = place - half, place + half
+    if low >= 0.0 and low + 1.0 <= high <= limit:
+        return math.floor(low), math.ceil(high)
     half = min(half, float(limit))
     place = min(max(place, -half), limit + half)
     low = min(max(math.floor(place - half), 0), limit - 1)
