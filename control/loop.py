@@ -38,6 +38,10 @@ LEADS_OUT = (
     "the next step would lead the robot out of the workspace; resume goes on as soon as it leads inward"
 )
 NOT_SEEN = "the robot is not seen; put it in the camera's view and wait for a lock"
+ASSUMED_ENDS = (
+    "nothing but vision.heading_hint_deg tells which end of the robot is A: check it in the picture; if it is the "
+    "wrong one, disarm and turn the robot round, or give end A a mark"
+)
 UNKNOWN_HEAT = (
     f"what the coils carried before this start is not known: they count as {ASSUMED_AT_START:.0%} hot"
 )
@@ -129,6 +133,8 @@ class ControlLoop:
         self._energise(gait)
         self._gait = gait
         self._enter(state, "ready to start", "info")
+        if self._parts.perception.assumes_ends:
+            self.announce("info", "heading", ASSUMED_ENDS)
 
     def disarm(self, reason: str = "disarmed by the operator") -> None:
         """Zero the coils and end the run; nothing to do when disarmed already."""

@@ -139,6 +139,7 @@ class Observation:
     window: the searched region (u0, v0, u1, v1), px; the whole frame when there was nothing to expect.
     reason: why there is no measurement, in the operator's words; "" with one.
     rivals: (u, v) of other blobs that look like the robot, px.
+    assumes_ends: which end is A was told by nothing but the rig file's hint.
     """
 
     tracking: Tracking
@@ -146,6 +147,7 @@ class Observation:
     window: tuple[int, int, int, int]
     reason: str = ""
     rivals: tuple[tuple[float, float], ...] = ()
+    assumes_ends: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -102,6 +102,11 @@ class Perception:
             return ""
         return self.observation.reason or NOT_BELIEVED
 
+    @property
+    def assumes_ends(self) -> bool:
+        """Nothing has told yet which end of the robot is A, but the rig file."""
+        return self.observation is not None and self.observation.assumes_ends
+
     def _repeats(self, frame: Frame) -> bool:
         """Few cameras come to the second look: one that cleans its pictures of noise may show a plate that is the
         same in every sample, while a robot smaller than their distance has moved between them."""

@@ -1,13 +1,18 @@
-"""Row 7: two robots alike, and nothing that tells them apart."""
+"""Row 7: two robots alike, or two ends alike, and nothing that tells them apart."""
 
 from __future__ import annotations
 
 import pytest
 
+from control.loop import ASSUMED_ENDS
 from control.model import Tracking
 from control.safety import Refused
 from control.snapshot import RigState
-from tests.faults.fault_bench import FaultBench
+from server.settings import RigFile
+from server.vision_settings import colour_section
+from tests.faults.fault_bench import FaultBench, fault_bench
+from tests.faults.invariants import nothing_left_behind
+from vision.simulated.scenes import SCENES
 
 
 def test_a_rig_that_sees_two_alike_cannot_be_armed_until_the_right_one_is_clicked(bench: FaultBench) -> None:
@@ -44,3 +49,16 @@ def test_a_click_on_the_other_one_is_followed_at_once_when_the_rig_is_disarmed(b
     truth = bench.world.body().pose
     assert snapshot.pose is not None
     assert truth.distance_to(snapshot.pose.x, snapshot.pose.y) == pytest.approx(0.020, abs=0.001)
+
+
+@pytest.mark.parametrize("scene", ["clean", "end_mark"])
+def test_arming_says_when_nothing_but_the_rig_file_tells_which_end_is_a(scene: str) -> None:
+    settings = RigFile().with_simulation(seed=3, scene=scene)
+    if mark := SCENES[scene].end_colour:
+        vision = settings.vision.model_copy(update={"end_mark": colour_section(mark)})
+        settings = settings.model_copy(update={"vision": vision})
+    with nothing_left_behind(), fault_bench(settings) as bench:
+        bench.arm()
+        bench.run_for(0.3)
+        said = [event.message for event in bench.trace.events if event.code == "heading"]
+        assert said == ([ASSUMED_ENDS] if scene == "clean" else [])

@@ -82,3 +82,14 @@ def test_a_mark_names_the_ends_although_the_hint_is_wrong():
     seen = [tracker.update(Frame(painter.paint(body, index), index / 60, index), None) for index in range(8)]
     measured = [each.measurement for each in seen if each.measurement is not None]
     assert abs(wrap(measured[0].pose.heading - body.pose.heading)) < math.radians(2.0)
+
+
+@pytest.mark.parametrize("name", ["clean", "end_mark"])
+def test_it_is_said_whether_anything_but_the_hint_tells_the_ends(name: str):
+    scene = SCENES[name]
+    painter = Painter(scene.optics, scene.settings)
+    body = Body(Pose(0.0, 0.01, 1.0), PIVOT_A, 0.0)
+    tracker = tracker_of(scene, body.pose.heading)
+    seen = [tracker.update(Frame(painter.paint(body, index), index / 60, index), None) for index in range(8)]
+    assert seen[-1].measurement is not None
+    assert seen[-1].assumes_ends == (name == "clean")

@@ -67,10 +67,9 @@ def test_a_click_on_one_of_two_side_by_side_takes_that_one(distance: float, whic
     """On the coarse grid of the first look they are one blob."""
     watching, meant = tracker(), (ROBOT, beside(distance))[which]
     watching.follow(*OPTICS.to_pixel(meant.pose.x, meant.pose.y, HEIGHT))
-    for index in range(6):
-        seen = watching.update(shown(index, beside(distance)).frame, None).measurement
-        assert seen is None or seen.pose.distance_to(meant.pose.x, meant.pose.y) < SAME
-    assert seen is not None
+    seen = [watching.update(shown(index, beside(distance)).frame, None).measurement for index in range(6)]
+    assert seen[-1] is not None
+    assert all(each is None or each.pose.distance_to(meant.pose.x, meant.pose.y) < SAME for each in seen)
 
 
 @pytest.mark.parametrize("speed", [0.020, 0.030, 0.100])
@@ -94,13 +93,11 @@ def test_a_part_that_a_hand_leaves_free_is_not_taken_for_the_whole_robot(gone: f
         assert watching.update(Frame(whole, index / RATE, index), None) is not None
     part, edge = whole.copy(), round(u + 0.25 * LENGTH * OPTICS.scale_at(0.0, 0.0, HEIGHT))
     part[round(v) - 30 : round(v) + 30, edge : edge + 60] = HAND_COLOUR
-    for index in range(8, 16):
-        observation = watching.update(Frame(part, index / RATE + gone, index), None)
-        assert observation.measurement is None
-    assert observation.reason == COVERED
-    for index in range(16, 19):
-        observation = watching.update(Frame(whole, index / RATE + gone, index), None)
-    assert observation.measurement is not None
+    covered = [watching.update(Frame(part, index / RATE + gone, index), None) for index in range(8, 16)]
+    assert all(each.measurement is None for each in covered)
+    assert covered[-1].reason == COVERED
+    free = [watching.update(Frame(whole, index / RATE + gone, index), None) for index in range(16, 19)]
+    assert free[-1].measurement is not None
 
 
 def test_all_blobs_of_a_picture_share_one_list_of_who_is_there():

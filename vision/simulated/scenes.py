@@ -181,7 +181,7 @@ SCENES: Mapping[str, Scene] = MappingProxyType(
         "larger_twin_and_hand": Scene(
             "A hand, and a larger robot of its kind.", (twins(scale=1.4, keep=0.025), hand())
         ),
-        "jpeg": Scene("A camera that compresses, as webcams do at their worst.", (jpeg(40, 75),)),
+        "jpeg": Scene("A camera that compresses to JPEG of quality 40 to 75.", (jpeg(40, 75),)),
         "strong_lens": Scene("A wide-angle lens.", optics=STRONG_LENS),
         "small_robot": Scene("A robot 20 px long.", optics=FAR_CAMERA),
         "end_mark": Scene(

@@ -14,6 +14,8 @@ class EndsMemory:
 
     def __init__(self, hint: float) -> None:
         self.heading = hint
+        self.is_assumed = True
+        """Nothing but the hint has told the ends so far: no mark was seen."""
         self._contradictions = 0
 
     def side(self, remembered: int, mark: int, *, is_followed: bool) -> int:
@@ -24,8 +26,10 @@ class EndsMemory:
         """
         if mark in (0, remembered):
             self._contradictions = 0
+            self.is_assumed &= mark == 0
             return remembered
-        if not is_followed:
-            return mark
         self._contradictions += 1
-        return mark if self._contradictions >= MARK_PATIENCE else remembered
+        if is_followed and self._contradictions < MARK_PATIENCE:
+            return remembered
+        self.is_assumed = False
+        return mark

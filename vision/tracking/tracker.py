@@ -202,4 +202,4 @@ class ColourTracker:
         self._memory = Memory(blob.centre, view.at, seen if known is None else known.learnt(seen))
         self._seen_at, self._was_seen = view.at, True
         rivals = self._company.places(view.at, ELSEWHERE_AFTER)
-        return Observation(Tracking.LOCKED, measurement, view.window, "", rivals)
+        return Observation(Tracking.LOCKED, measurement, view.window, "", rivals, self._ends.is_assumed)
