@@ -175,21 +175,27 @@ def _spare(axis_row: Vector, allowed: float, limits: CoilLimits) -> float:
 def _ramp_share(wanted: Wanted, allocation: Matrix, limits: CoilLimits) -> tuple[float, str]:
     """A change of pivot may begin at any tick and turns the elevation at 2 |e| / ramp.
 
-    dB/de = |B| [sin e sin h, -sin e cos h, cos e]: at most sin |e| in the plate and 1 across it.
+    dB/de = |B| [sin e sin h, -sin e cos h, cos e]; the heading may be any.
     """
     steepest = max(abs(wanted.elevation), abs(wanted.target))
-    speed = 2.0 * steepest / limits.ramp
-    sine = math.sin(min(steepest, 0.5 * math.pi))
+    speed = abs(wanted.field) * 2.0 * steepest / limits.ramp
     return _least(
         (
-            _share(
-                _spare(row, allowed, limits),
-                abs(wanted.field) * speed * math.hypot(row[0] * sine, row[1] * sine, row[2]),
-            ),
+            _share(_spare(row, allowed, limits), speed * _most_by_elevation(row, steepest)),
             f"{SLEW} of coil {axis}",
         )
         for axis, row, allowed in zip(AXES, allocation, limits.slew, strict=True)
     )
+
+
+def _most_by_elevation(row: Vector, steepest: float) -> float:
+    """The largest p sin |e| + q cos e for |e| <= steepest, with the row's parts p in the plate and q across it.
+
+    It rises up to tan e = p / q, where it is the length of the row.
+    """
+    in_plate, across = math.hypot(row[0], row[1]), abs(row[2])
+    worst = min(steepest, math.atan2(in_plate, across))
+    return in_plate * math.sin(worst) + across * math.cos(worst)
 
 
 def _rate(wanted: Wanted, field: float, allocation: Matrix, limits: CoilLimits) -> tuple[float, str]:

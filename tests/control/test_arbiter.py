@@ -373,3 +373,8 @@ def test_of_two_causes_the_more_severe_wins_and_clearing_one_keeps_the_other(one
 def test_the_severities_are_in_order() -> None:
     assert Severity.OK < WARN < HOLD < DISARM < LATCH
     assert verdict((Finding(WARN, "a", ""), Finding(DISARM, "b", ""), Finding(HOLD, "c", ""))) is DISARM
+
+
+def test_a_lost_robot_says_why_where_the_tracker_knows() -> None:
+    plain = message(tracking=Tracking.LOST)
+    assert message(tracking=Tracking.LOST, tracking_reason="it is covered") == f"{plain}: it is covered"

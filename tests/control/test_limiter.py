@@ -4,7 +4,7 @@ import math
 from dataclasses import replace
 
 import pytest
-from hypothesis import assume, given
+from hypothesis import assume, example, given
 from hypothesis import strategies as st
 
 from control.coils import CoilSet, command_field, currents_for
@@ -36,6 +36,9 @@ triples = st.tuples(positive, positive, positive)
 coil_limits = st.builds(
     CoilLimits, triples, positive, triples, triples, st.floats(1e-3, 1.0), st.floats(1e-3, 1.0)
 )
+LEANING = Wanted(heading=0.0, rate=0.0, elevation=-1.0, target=0.0, field=0.03125)
+ALMOST_SPENT = CoilLimits((1.0, 1.0, 1.0), 1.0, (1.0, 1.0, 559.0), (1.0, 1.0, 1.0), 1.0, 1.0)
+"""The strength's own slew leaves a hundredth; a row that lies askew changes most at the steepest elevation."""
 motions = st.builds(
     Wanted,
     heading=st.floats(-10.0, 10.0),
@@ -79,6 +82,7 @@ def test_no_current_and_no_power_passes_its_limit(wanted, allocation, limits):
         assert sum(r * i * i for r, i in zip(limits.resistances, currents, strict=True)) <= limits.power
 
 
+@example(LEANING, ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 362.0, 425.0)), ALMOST_SPENT, 0.0, 0.0)
 @given(motions, matrices, coil_limits, st.floats(0.0, 1.0), st.floats(0.0, 1.0))
 def test_no_current_changes_faster_than_it_may(wanted, allocation, limits, turned, raised):
     """The derivatives of B by heading and elevation, anywhere on the way, with the strength's own slew on top."""

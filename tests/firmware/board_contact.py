@@ -22,7 +22,7 @@ from control.link.probe import BAUD
 from control.simulation.emulated import EmulatorProcess, prepare
 from control.simulation.emulator_port import EmulatorPort
 from control.simulation.lockstep import RemoteBoard, Sample
-from tests.processes import started
+from tests.processes import poll, started
 from tests.simulation.board_bench import CALM, CONFIGURE
 
 Kind = Literal["twin", "avr", "real"]
@@ -187,6 +187,7 @@ def stepped(kind: Kind) -> Iterator[SteppedContact]:
         try:
             contact = SteppedContact(terminal, board)
             contact.run(30)
+            poll(lambda: contact.listen() or contact.heard, bool)  # a busy computer's terminal lags
             yield contact
         finally:
             terminal.close()

@@ -9,6 +9,7 @@ import pytest
 from calibration_visit import PATIENCE, wizard
 
 from control.safety import Refused
+from server import camera_calibration
 from server.assembly import build_machine
 from server.camera_calibration import CameraCalibration
 from server.optics import assumed_model, board_of
@@ -74,7 +75,9 @@ async def test_the_board_can_be_taken_away_in_any_state_and_whoever_asks_is_told
         assert await shown(page) is None, "the rebuilt camera has not seen it"
 
 
-async def test_a_board_that_moves_is_no_view_and_no_plane(serve, tmp_path):
+async def test_a_board_that_moves_is_no_view_and_no_plane(serve, tmp_path, monkeypatch):
+    # Drawing the board anew for each picture takes a busy computer long.
+    monkeypatch.setattr(camera_calibration, "OLDEST_PICTURE", 20.0)
     async with wizard(serve, tmp_path / "rig.toml") as page:
         camera, settings = page.rig.machine.camera, page.rig.settings.camera
         assert isinstance(camera, SyntheticCamera)
