@@ -18,7 +18,7 @@ from control.link.conversion import LinkError
 from control.safety import Refused
 from server.assembly import Machine
 from server.commands.consent import ask_for_consent
-from server.commands.outcome import FAILED, REFUSED, USAGE, fail
+from server.commands.outcome import FAILED, REFUSED, USAGE, console, fail
 from server.settings import MS, RigFile
 from server.settings_in_si import FULL_FIELD
 from server.signals import coils_stop_first
@@ -75,6 +75,8 @@ def opened(rig_file: RigFile, *, realtime: bool, yes: bool) -> Iterator[tuple[Ma
                 Bench(machine.camera, machine.loop.parts, settings) as bench,
             ):
                 bench.wait_until_ready()
+                # Said before any current flows also because the first line loads what takes a busy computer long.
+                console.print("the board is ready, the coils are at zero")
                 yield machine, bench
         finally:
             machine.close()
