@@ -89,3 +89,8 @@ def until(condition: Callable[[], bool], patience: float = 10.0) -> bool:
             return True
         time.sleep(0.005)
     return False
+
+
+def drive_times(link: Link, times: int) -> None:
+    for _ in range(times):
+        link.drive(COMMAND)

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import os
-import pty
 import threading
 import time
-import tty
 from collections.abc import Iterator
 from dataclasses import replace
 
 import pytest
-from link_bench import COMMAND, CONFIGURATION, Rig, rig
+from link_bench import COMMAND, CONFIGURATION, Rig, drive_times, rig
 
 from control.link import wire
 from control.link.conversion import BoardState, LinkError
@@ -25,11 +22,6 @@ from control.link.session import LinkState, Session
 def bench() -> Iterator[Rig]:
     with rig() as made:
         yield made
-
-
-def drive_times(link: Link, times: int) -> None:
-    for _ in range(times):
-        link.drive(COMMAND)
 
 
 def test_a_link_is_closed_until_it_is_opened(bench: Rig) -> None:
@@ -327,51 +319,6 @@ def test_another_configuration_than_ours_is_not_ready() -> None:
     number = wire.Decoder().feed(session.due(0.02))[0].sequence
     session.receive(wire.encode(Banner((0, 1, 0), 1, 4711), number, 5), 0.03)
     assert session.state is LinkState.CONFIGURING
-
-
-@pytest.fixture
-def terminal() -> Iterator[tuple[int, str]]:
-    ours, theirs = pty.openpty()
-    tty.setraw(theirs)
-    yield ours, os.ttyname(theirs)
-    os.close(theirs)
-    os.close(ours)
-
-
-def test_a_real_terminal_that_nobody_reads_is_let_go_of(terminal: tuple[int, str]) -> None:
-    """No board here: the session is told that it is ready, the kernel's buffer does the rest."""
-    link = Link(terminal[1], 500000, CONFIGURATION, time.monotonic)
-    link.open()
-    link._session.state = LinkState.READY
-    before = time.monotonic()
-    with pytest.raises(LinkError, match="jammed"):
-        drive_times(link, 100000)
-    assert time.monotonic() - before < 2.0
-    assert link.status.state == "closed"
-    link.close()
-
-
-def test_a_real_terminal_in_use_is_refused(terminal: tuple[int, str]) -> None:
-    first = Link(terminal[1], 500000, CONFIGURATION, time.monotonic)
-    second = Link(terminal[1], 500000, CONFIGURATION, time.monotonic)
-    first.open()
-    with pytest.raises(LinkError, match="the other program that has it open"):
-        second.open()
-    first.close()
-
-
-def test_a_real_terminal_that_hangs_up_closes_the_link() -> None:
-    ours, theirs = pty.openpty()
-    tty.setraw(theirs)
-    link = Link(os.ttyname(theirs), 500000, CONFIGURATION, time.monotonic)
-    link.open()
-    os.close(theirs)
-    os.close(ours)
-    link.poll()
-    link.poll()
-    assert link.status.state == "closed"
-    assert "lost" in link.reason
-    link.close()
 
 
 def test_opening_twice_is_opening_once(bench: Rig) -> None:

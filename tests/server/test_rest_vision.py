@@ -4,82 +4,18 @@ from __future__ import annotations
 
 import asyncio
 import base64
-import contextlib
 import math
-import tomllib
-from collections.abc import Callable
 from pathlib import Path
 
 import cv2
-import httpx
 import numpy as np
 import pytest
+from vision_bench import BLUE, COMMENTED, RED, bench
 
-from server.app import create_app
-from server.assembly import build_machine
 from server.atomic_save import previous_of
-from server.rig import Rig
-from server.rig_changes import RigChanges
 from server.rig_file import RigStore, load_rig_file
 
 pytestmark = pytest.mark.anyio
-
-PATIENCE = 20.0
-BLUE = {"hue_deg": [200.0, 260.0], "saturation": [80, 255], "value": [40, 255]}
-RED = {"hue_deg": [340.0, 20.0], "saturation": [110, 255], "value": [60, 255]}
-COMMENTED = "[vision]\nvalue = [60, 255]   # a red robot\n"
-
-
-class Bench:
-    """A served rig with its file."""
-
-    def __init__(self, at, rig: Rig, store: RigStore) -> None:
-        self.rig, self.path = rig, store.path
-        self.api = httpx.AsyncClient(base_url=at.url + "/api/v1", timeout=PATIENCE)
-
-    async def get(self, what: str):
-        return (await self.api.get(what)).json()
-
-    async def until(self, what: str, condition):
-        async with asyncio.timeout(PATIENCE):
-            while not condition(answer := await self.get(what)):
-                await asyncio.sleep(0.02)
-        return answer
-
-    async def ready(self) -> None:
-        await self.until("/state", lambda state: state["tracking"] == "locked" and not state["faults"])
-
-    async def robot_px(self) -> tuple[float, float]:
-        """Where the robot is in the picture."""
-        await self.until("/vision", lambda vision: vision["tracking"] == "locked")
-        pose = self.rig.snapshot.pose
-        assert pose is not None
-        return self.rig.machine.camera_model.to_pixel(pose.x, pose.y, self.rig.machine.body_height)
-
-    async def change(self, **changes) -> httpx.Response:
-        return await self.api.patch("/vision", json=changes)
-
-    def in_use(self) -> dict:
-        """The colours that the tracker itself has."""
-        colour = self.rig.machine.tracker._settings.colour
-        return {
-            "hue_deg": list(colour.hue),
-            "saturation": list(colour.saturation),
-            "value": list(colour.value),
-        }
-
-    def on_disk(self) -> dict:
-        return tomllib.loads(self.path.read_text())["vision"]
-
-
-@contextlib.asynccontextmanager
-async def bench(serve, store: RigStore):
-    rig = Rig(build_machine(store.settings, realtime=True))
-    changes = RigChanges(rig, store, lambda settings: settings)
-    async with serve(create_app(rig, changes=changes)) as at:
-        one = Bench(at, rig, store)
-        async with one.api:
-            yield one
 
 
 @pytest.fixture
@@ -339,82 +275,3 @@ async def test_a_held_rig_is_told_which_blob_is_its_robot(here):
     assert answer.status_code == 200, answer.text
     assert (await here.change(colour=BLUE)).status_code == 409
     await here.api.post("/disarm")
-
-
-async def test_colours_that_cannot_be_saved_are_not_used_either(here):
-    await here.ready()
-    (previous_of(here.path) / "in the way").mkdir(parents=True)
-    assert (await here.change(colour=BLUE)).status_code == 409
-    assert (await here.get("/vision"))["colour"] == RED
-    assert here.path.read_text() == COMMENTED
-    await here.ready()
-
-
-class Meanwhile(RigStore):
-    """A rig file during whose saving something else happens."""
-
-    def __init__(self, path: Path) -> None:
-        super().__init__(path)
-        self.event: Callable[[], object] = lambda: None
-
-    def commit(self, staged, plan) -> None:
-        self.event()
-        super().commit(staged, plan)
-
-
-async def test_a_rig_armed_while_its_colours_could_not_be_saved_says_that_they_are_not_in_the_file(
-    serve, tmp_path
-):
-    store = Meanwhile(tmp_path / "rig.toml")
-    async with bench(serve, store) as one:
-        (previous_of(one.path) / "in the way").mkdir(parents=True)
-        await one.ready()
-        loop = asyncio.get_running_loop()
-        store.event = lambda: asyncio.run_coroutine_threadsafe(one.rig.arm(), loop).result(PATIENCE)
-        wider = {**RED, "value": [50, 255]}
-        refused = await one.change(colour=wider)
-        assert refused.status_code == 409
-        assert "values that are not in its file" in refused.json()["detail"]
-        assert (await one.get("/vision"))["colour"] == wider == one.in_use()
-        store.event = lambda: None
-        await one.api.post("/disarm")
-        previous_of(one.path).joinpath("in the way").rmdir()
-        previous_of(one.path).rmdir()
-        assert (await one.change(colour=wider)).status_code == 200
-        assert load_rig_file(one.path) == one.rig.settings
-
-
-async def test_an_edit_on_the_disk_while_a_change_is_made_is_not_overwritten(serve, tmp_path):
-    edited = "# my own hand\n[vision]\nvalue = [70, 255]\n"
-    store = Meanwhile(tmp_path / "rig.toml")
-    async with bench(serve, store) as one:
-        await one.ready()
-        store.event = lambda: one.path.write_text(edited)
-        refused = await one.change(colour=BLUE)
-        assert refused.status_code == 409
-        assert "reload it first" in refused.json()["detail"]
-        assert one.path.read_text() == edited
-        assert (await one.get("/vision"))["colour"] == RED == one.in_use()
-
-
-async def test_an_edit_of_the_colours_on_the_disk_is_taken_without_a_new_machine(here):
-    await here.ready()
-    machine = here.rig.machine
-    here.path.write_text(
-        '[vision]\nvalue = [45, 255]\nprofile = "lamp"\n[vision.profiles.lamp]\nvalue = [33, 255]\n'
-    )
-    answer = await here.api.post("/rig/reload")
-    assert answer.status_code == 200, answer.text
-    assert answer.json()["rebuilt"] is False
-    assert here.rig.machine is machine
-    assert (await here.get("/vision"))["colour"]["value"] == [33, 255]
-    await here.ready()
-
-
-async def test_a_change_of_colours_together_with_another_value_builds_the_machine_anew(here):
-    await here.ready()
-    machine = here.rig.machine
-    answer = await here.api.patch("/rig", json={"vision": {"value": [50, 255]}, "robot": {"lift_ratio": 3.0}})
-    assert answer.json()["rebuilt"] is True
-    assert here.rig.machine is not machine
-    assert (await here.get("/vision"))["colour"]["value"] == [50, 255]

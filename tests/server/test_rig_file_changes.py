@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 import viser
 import zstandard
+from rig_file_bench import PATIENCE, RigFileBench
 
 from control.coil_heat import CoilHeat
 from server.app import create_app
@@ -26,30 +27,12 @@ from tests.processes import started
 
 pytestmark = pytest.mark.anyio
 
-PATIENCE = 20.0
 
-
-class Bench:
-    """A served rig with its file."""
-
-    def __init__(self, at, rig: Rig, path: Path) -> None:
-        self.at, self.rig, self.path = at, rig, path
-        self.api = httpx.AsyncClient(base_url=at.url + "/api/v1", timeout=PATIENCE)
+class Bench(RigFileBench):
+    """Whose file is changed."""
 
     async def patch(self, changes) -> httpx.Response:
         return await self.api.patch("/rig", json=changes)
-
-    async def get(self, what: str):
-        return (await self.api.get(what)).json()
-
-    async def until(self, what: str, condition):
-        async with asyncio.timeout(PATIENCE):
-            while not condition(answer := await self.get(what)):
-                await asyncio.sleep(0.02)
-        return answer
-
-    async def ready(self) -> None:
-        await self.until("/state", lambda state: state["tracking"] == "locked" and not state["faults"])
 
     async def messages(self) -> list[str]:
         return [event["message"] for event in (await self.get("/events"))["events"]]
