@@ -71,10 +71,13 @@ class LatencyWalk:
     def _note_field(self, now: float) -> None:
         since = self._record.field_known_until
         if not math.isfinite(since):
-            since = now - GRID
+            self._note_field_at(now)
+            return
         for step in range(1, 1 + math.floor((now - since) / GRID)):
-            time = since + step * GRID
-            self._record.field(time, self._loop.field_at(time - self._actuation_delay)[0])
+            self._note_field_at(since + step * GRID)
+
+    def _note_field_at(self, time: float) -> None:
+        self._record.field(time, self._loop.field_at(time - self._actuation_delay)[0])
 
     def progress(self, snapshot: Snapshot) -> float:
         """0..1."""

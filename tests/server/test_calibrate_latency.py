@@ -2,6 +2,7 @@
 
 import json
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -14,12 +15,12 @@ from control.model import Tracking, wrap
 from control.runs import Choice, RunRequest, Selection
 from control.safety import Refused
 from control.snapshot import Snapshot
-from server.assembly import build_machine
+from server.assembly import Machine, build_machine
 from server.camera_sections import CameraSection
 from server.cli import app
 from server.diagnosis.latency import examine
 from server.headless import run_headless
-from server.latency_calibration import Latency, calibrate_latency
+from server.latency_calibration import Latency, LatencyWalk, calibrate_latency
 from server.rig_file import load_rig_file
 from server.settings import EstimatorSection, LinkSection, RigFile
 
@@ -150,3 +151,29 @@ def test_the_doctor_says_that_a_real_camera_s_latency_was_never_measured() -> No
 
 def real(**camera) -> RigFile:
     return RigFile(camera=CameraSection(**camera), link=LinkSection(port="/dev/ttyACM0"))
+
+
+class LateClock:
+    """A machine whose clock shows `by` s more; what it tells is the same."""
+
+    def __init__(self, machine: Machine, by: float) -> None:
+        self.settings, self.loop, self._machine, self._by = machine.settings, self, machine, by
+
+    def field_at(self, time: float) -> tuple[float, float]:
+        return self._machine.loop.field_at(time - self._by)
+
+    def told(self, snapshot: Snapshot) -> Snapshot:
+        seen = snapshot.observation
+        if seen is not None and seen.measurement is not None:
+            later = replace(seen.measurement, captured_at=seen.measurement.captured_at + self._by)
+            seen = replace(seen, measurement=later)
+        return replace(snapshot, time=snapshot.time + self._by, observation=seen)
+
+
+@pytest.mark.parametrize("uptime", [34_137.414, 1.0e6 / 3.0])
+def test_the_hour_that_the_computer_has_been_up_for_does_not_matter(uptime: float) -> None:
+    machine = build_machine(rig(), realtime=False)
+    clock = LateClock(machine, uptime)
+    walk = LatencyWalk(clock, Gait(), WiggleParameters(turns=8))  # type: ignore[arg-type]
+    run_headless(machine, "latency", walk.request, lambda snapshot: walk.watch(clock.told(snapshot)))
+    assert walk.found().latency == pytest.approx(0.035, abs=WITHIN)
