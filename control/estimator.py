@@ -17,8 +17,8 @@ from control.backlash import ENGAGED_AFTER
 from control.field_model import FieldModel, Turn
 from control.gait_model import GaitModel
 from control.model import PIVOT_A, PIVOT_B, Expectation, Measurement, Pivot, Pose, body_tilt, swing
-from control.pivot_filter import PivotFilter
-from control.snapshot import Vector
+from control.pivot_filter import PivotFilter, moved
+from control.snapshot import Covariance, Vector
 
 GATE = 16.27
 """99.9 % point of chi-squared with three degrees of freedom."""
@@ -64,10 +64,16 @@ class EstimatorSettings:
 
 @dataclass(frozen=True, slots=True)
 class Carried:
-    """The estimate at one instant: pose, standard deviations (m, m, rad)."""
+    """The estimate at one instant: pose, and its covariance (m^2, m rad, rad^2)."""
 
     pose: Pose
-    sigma: Vector
+    covariance: Covariance
+
+    @property
+    def sigma(self) -> Vector:
+        """Standard deviations of x, y and heading; m, m, rad."""
+        xx, _, _, yy, _, hh = self.covariance
+        return math.sqrt(max(xx, 0.0)), math.sqrt(max(yy, 0.0)), math.sqrt(max(hh, 0.0))
 
 
 @dataclass(frozen=True, slots=True)
@@ -173,15 +179,8 @@ class Estimator:
     def carry(self, time: float) -> Carried:
         """The estimate carried forward to `time` (s) through what the field has done since."""
         motion = self._motion(self._time, time)
-        xx, _, xh, yy, yh, hh = self._filter.covariance
-        # The diagonal of F P F' + Q, with F as in `PivotFilter.move`.
-        variances = (
-            xx - 2.0 * motion.dy * xh + motion.dy**2 * hh + motion.position_noise,
-            yy + 2.0 * motion.dx * yh + motion.dx**2 * hh + motion.position_noise,
-            hh + motion.heading_noise,
-        )
-        x, y, heading = (math.sqrt(max(variance, 0.0)) for variance in variances)
-        return Carried(motion.arrival, (x, y, heading))
+        noise = motion.position_noise, motion.heading_noise
+        return Carried(motion.arrival, moved(self._filter.covariance, (motion.dx, motion.dy), noise))
 
     @property
     def position_sigma(self) -> float:

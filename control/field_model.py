@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections import deque
 from dataclasses import dataclass
+from itertools import islice
 
 from control.model import PIVOT_A, PIVOT_B, Pivot, wrap
 
@@ -45,6 +46,23 @@ class Turn:
     pivot: Pivot
 
 
+@dataclass(frozen=True, slots=True)
+class FieldTrace:
+    """What the mirror says at one tick, such that who keeps all traces knows the field at every instant.
+
+    heading (unwrapped), elevation: rad.  strength: T, and full_at: when it is or was complete, s (inf while off).
+    corners: the new ones since the last trace, oldest first; all of them when `anew`: those told before do not hold.
+    """
+
+    is_on: bool
+    heading: float
+    elevation: float
+    strength: float
+    full_at: float
+    corners: tuple[Corner, ...]
+    anew: bool
+
+
 class FieldModel:
     """Heading and elevation of the field, as the board moves them."""
 
@@ -66,6 +84,16 @@ class FieldModel:
         self.reported_at = -math.inf
         """The time (s) that the board's newest report tells of, as far as is known."""
         self._corners: deque[Corner] = deque(maxlen=HISTORY)
+        self._untold = 0
+        self._anew = False
+
+    def trace(self) -> FieldTrace:
+        """What there is to record of this tick; the next trace goes on from here."""
+        untold = min(self._untold, len(self._corners))
+        corners = tuple(islice(self._corners, len(self._corners) - untold, None))
+        anew, self._untold, self._anew = self._anew, 0, False
+        strength = self.strength_at(self._time)
+        return FieldTrace(self._on, self._heading, self._elevation, strength, self._full_at, corners, anew)
 
     @property
     def ramp(self) -> float:
@@ -111,6 +139,7 @@ class FieldModel:
         self._full_at = time + strength / self._field_slew
         self._corners.clear()
         self._corners.append(Corner(time, heading, self._elevation))
+        self._untold, self._anew = 1, True
 
     def stop(self, time: float) -> None:
         """The field goes off; from here on it turns nothing."""
@@ -130,6 +159,7 @@ class FieldModel:
         while self._time < time:
             self._time = self._next_piece(time)
             self._corners.append(Corner(self._time, self._heading, self._elevation))
+            self._untold += 1
 
     def _next_piece(self, time: float) -> float:
         """Move along one straight piece that ends at `time` at the latest; returns when it ended."""
@@ -182,6 +212,7 @@ class FieldModel:
         self._corners = deque(
             (Corner(c.time, c.heading + shift, c.elevation) for c in self._corners), maxlen=HISTORY
         )
+        self._untold, self._anew = HISTORY, True
 
     def forget_clock(self) -> None:
         """The board's time begins again: it has restarted, or its count of milliseconds has gone round (49 days)."""

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from control.link.conversion import Telemetry
 from control.model import Pose
 from control.parts import Parts
 from control.safety import ENERGISED
-from control.snapshot import ZERO, Fault, RigState, Snapshot, Vector
+from control.snapshot import ZERO, BoardReport, Fault, RigState, Snapshot, Vector
 from control.timing import TimingLog
 from control.vitals import Vitals
 from control.walk import Walk
@@ -44,6 +45,7 @@ def snapshot_of(instant: Instant, parts: Parts, vitals: Vitals, timing: TimingLo
         simulated=parts.simulated,
         pose=pose,
         pose_sigma=instant.pose_sigma,
+        pose_covariance=perception.covariance,
         observation=perception.observation,
         tracking=perception.tracking,
         tracking_reason=perception.reason,
@@ -54,6 +56,8 @@ def snapshot_of(instant: Instant, parts: Parts, vitals: Vitals, timing: TimingLo
         currents=currents,
         measured_currents=telemetry.measured_currents if telemetry is not None else ZERO,
         field=parts.coils.local_field(pose.x, pose.y, currents) if pose is not None else ZERO,
+        field_trace=parts.field.trace(),
+        report=None if telemetry is None else _report(telemetry),
         limited_by=actuation.limited_by,
         coil_heat=vitals.heat.shares,
         refusals=vitals.refusals,
@@ -62,4 +66,10 @@ def snapshot_of(instant: Instant, parts: Parts, vitals: Vitals, timing: TimingLo
         camera=vitals.frames.figures,
         timing=timing.figures(),
         link=parts.link.status,
+    )
+
+
+def _report(telemetry: Telemetry) -> BoardReport:
+    return BoardReport(
+        telemetry.received_at, telemetry.board_time, telemetry.heading, telemetry.elevation
     )

@@ -212,6 +212,11 @@ class ControlLoop:
         else:
             self._enter(after(self._state, Event.FINISH), "run stopped", "info")
 
+    def abort_run(self, code: str, reason: str) -> None:
+        """End the run for a cause outside the loop, and disarm; nothing to do while there is none."""
+        if self._walk is not None:
+            self._lose(Finding(Severity.DISARM, code, reason))
+
     def pause(self) -> None:
         """Hold the run: zero current, and go on with `resume`."""
         if self._walk is None:

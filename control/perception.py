@@ -14,7 +14,7 @@ from control.backlash import Backlash
 from control.estimator import Estimator, EstimatorSettings
 from control.field_model import FieldModel
 from control.model import Expectation, Frame, Measurement, Observation, Pose, Tracking, wrap
-from control.snapshot import ZERO, Vector
+from control.snapshot import ZERO, Covariance, Vector
 
 LOST_WITHIN = 3.0
 """A robot that may be more than its own length away, at so many standard deviations, is lost (faults.md)."""
@@ -24,6 +24,7 @@ REGAINED = 0.5
 """What a sighting that is where it should be takes from the doubt: every other one wrong is too many for long."""
 THUMBNAIL = 16
 """Every 16th pixel of every 16th row tells a new picture: sensor noise never repeats."""
+NO_COVARIANCE: Covariance = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 NOT_BELIEVED = "something like the robot is seen, but not where the robot can be"
 
 
@@ -55,6 +56,8 @@ class Perception:
         self.refused_sightings = 0
         """Sightings that were no finite numbers."""
         self.tracking = Tracking.LOST
+        self.covariance = NO_COVARIANCE
+        """Of the pose that `pose_at` has told last; zero for none."""
         self._thumbnail = b""
         self._picture: NDArray[np.uint8] = np.empty(0, np.uint8)
 
@@ -91,8 +94,10 @@ class Perception:
     def pose_at(self, now: float) -> tuple[Pose | None, Vector]:
         """The estimate carried forward to now and its standard deviations (m, m, rad)."""
         if not self.estimator.known:
+            self.covariance = NO_COVARIANCE
             return None, ZERO
         carried = self.estimator.carry(now)
+        self.covariance = carried.covariance
         return carried.pose, carried.sigma
 
     @property

@@ -16,11 +16,30 @@ from filterpy.kalman import ExtendedKalmanFilter
 from numpy.typing import NDArray
 
 from control.model import Pose, wrap
+from control.snapshot import Covariance
 
 Matrix = NDArray[np.float64]
 Triple = tuple[float, float, float]
-Covariance = tuple[float, float, float, float, float, float]
-"""The upper triangle xx, xy, xh, yy, yh, hh; m^2, m rad, rad^2."""
+
+
+def moved(covariance: Covariance, motion: tuple[float, float], noise: tuple[float, float]) -> Covariance:
+    """The covariance after a motion of the body, F P F' + Q.
+
+    motion: displacement (dx, dy), m. It is fixed in the body's frame, so it turns with the heading:
+    F = d(arrival)/d(departure) is the identity but for -dy and dx in the heading's column.
+    noise: variances of the process in position, m^2, and heading, rad^2: the diagonal of Q.
+    """
+    dx, dy = motion
+    xx, xy, xh, yy, yh, hh = covariance
+    moved_xh, moved_yh = xh - dy * hh, yh + dx * hh
+    return (
+        xx - dy * (xh + moved_xh) + noise[0],
+        xy + dx * xh - dy * moved_yh,
+        moved_xh,
+        yy + dx * (yh + moved_yh) + noise[0],
+        moved_yh,
+        hh + noise[1],
+    )
 
 
 class PivotFilter(ExtendedKalmanFilter):
@@ -66,24 +85,9 @@ class PivotFilter(ExtendedKalmanFilter):
         return math.sqrt(max(self.covariance[5], 0.0))
 
     def move(self, arrival: Pose, motion: tuple[float, float], noise: tuple[float, float]) -> None:
-        """Predict: the arc leads to `arrival`; the covariance becomes F P F' + Q.
-
-        motion: displacement (dx, dy), m. It is fixed in the body's frame, so it turns with the heading:
-        F = d(arrival)/d(departure) is the identity but for -dy and dx in the heading's column.
-        noise: variances of the process in position, m^2, and heading, rad^2: the diagonal of Q.
-        """
-        dx, dy = motion
-        xx, xy, xh, yy, yh, hh = self.covariance
-        moved_xh, moved_yh = xh - dy * hh, yh + dx * hh
+        """Predict: the arc leads to `arrival`; motion and noise as in `moved`."""
         self.mean = (arrival.x, arrival.y, arrival.heading)
-        self.covariance = (
-            xx - dy * (xh + moved_xh) + noise[0],
-            xy + dx * xh - dy * moved_yh,
-            moved_xh,
-            yy + dx * (yh + moved_yh) + noise[0],
-            moved_yh,
-            hh + noise[1],
-        )
+        self.covariance = moved(self.covariance, motion, noise)
 
     def innovate(self, sighting: Sequence[float]) -> float:
         """Squared Mahalanobis distance of a sighting from the prediction; `fuse` then takes the sighting in.

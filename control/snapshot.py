@@ -8,11 +8,15 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import Literal
 
+from control.field_model import FieldTrace
 from control.model import Observation, Pivot, Pose, Tracking
 
 Vector = tuple[float, float, float]
 ZERO: Vector = (0.0, 0.0, 0.0)
+Covariance = tuple[float, float, float, float, float, float]
+"""Of (x, y, heading): the upper triangle xx, xy, xh, yy, yh, hh; m^2, m rad, rad^2."""
 
 
 class RigState(StrEnum):
@@ -133,6 +137,19 @@ class RunProgress:
 
 
 @dataclass(frozen=True, slots=True)
+class BoardReport:
+    """The board's own field in its newest report.
+
+    received_at: rig time, s.  board_time: since its boot, s.  heading (in [-pi, pi)), elevation: rad.
+    """
+
+    received_at: float
+    board_time: float
+    heading: float
+    elevation: float
+
+
+@dataclass(frozen=True, slots=True)
 class Refusals:
     """What was not let in since the program began: pictures, sightings of the robot, reports of the board."""
 
@@ -142,18 +159,41 @@ class Refusals:
 
 
 @dataclass(frozen=True, slots=True)
+class RecordingStatus:
+    """What becomes of the recording of a run.
+
+    state: "off" while nothing is recorded, "recording", or "failed" with the reason in `failure`.  run: its id.
+    size: of the file so far, bytes.  ticks_waiting: to be written.  frames_left_out: pictures for which there was no
+    time.
+    """
+
+    state: Literal["off", "recording", "failed"] = "off"
+    run: str | None = None
+    size: int = 0
+    ticks_waiting: int = 0
+    frames_left_out: int = 0
+    failure: str = ""
+
+
+NOT_RECORDED = RecordingStatus()
+
+
+@dataclass(frozen=True, slots=True)
 class Snapshot:
     """One tick.
 
     time: rig time of this tick, s.  captured_at: capture time of the newest frame, s, None before the first one.
     pose: the estimate carried forward to `time`; None while the robot has not been found.
-    pose_sigma: its standard deviations (m, m, rad).
+    pose_sigma, pose_covariance: its standard deviations (m, m, rad) and its whole covariance.
     tracking_reason: why there is no lock, in the operator's words; "" with one.
     tracking_age: time since the last accepted measurement, s (inf before the first one).
     reference: the desired point, m, while a run is on.  error: distance from the pose to it, m.
     currents, measured_currents: commanded and sensed coil currents, A.  field: the field that the
-    commanded currents make at the robot, T.  limited_by: the limit that holds the command back, "" for none.
+    commanded currents make at the robot, T.  field_trace: how the board moves its field, as the host believes.
+    report: what the board says of it, None before the first report.
+    limited_by: the limit that holds the command back, "" for none.
     coil_heat: share of the heat that each coil may have, estimated.  refusals: what was not let in.
+    recording: filled in by who records; the loop itself knows nothing of it.
     """
 
     tick: int
@@ -165,6 +205,7 @@ class Snapshot:
     simulated: bool
     pose: Pose | None
     pose_sigma: Vector
+    pose_covariance: Covariance
     observation: Observation | None
     tracking: Tracking
     tracking_reason: str
@@ -175,6 +216,8 @@ class Snapshot:
     currents: Vector
     measured_currents: Vector
     field: Vector
+    field_trace: FieldTrace
+    report: BoardReport | None
     limited_by: str
     coil_heat: Vector
     refusals: Refusals
@@ -183,3 +226,4 @@ class Snapshot:
     camera: CameraTiming
     timing: Timing
     link: LinkStatus
+    recording: RecordingStatus = NOT_RECORDED

@@ -2,28 +2,34 @@
 
 from __future__ import annotations
 
+import asyncio
 import logging
 from collections.abc import AsyncIterator, Collection
 from contextlib import asynccontextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fastapi import APIRouter, FastAPI, WebSocket
+from fastapi import APIRouter, FastAPI
 from starlette.responses import FileResponse
 
 import web
 from server.api import (
     actions,
+    again,
     calibration,
     calibration_runs,
     camera,
     cameras,
     controllers,
+    exports,
     faults,
     manual,
+    overview,
     ports,
     problems,
+    replay,
     rig_file,
+    run_catalogue,
     runs,
     selection,
     simulated_board,
@@ -32,19 +38,22 @@ from server.api import (
     trajectories,
     vision,
 )
-from server.api.schemas import MM
 from server.api.ticks import TickText
 from server.calibration_runs import CalibrationRuns
 from server.camera_calibration import CameraCalibration
 from server.colour_picker import ColourPicker
 from server.door import Door
+from server.exports.work import Workshop
 from server.fresh_files import ALWAYS_ASK, FreshFiles
 from server.pictures import Pictures
-from server.scene import SceneGeometry
+from server.replay.sessions import ReplaySessions
 from server.scene_feed import SceneFeed
-from server.scene_page import scene_page
+from server.scene_live import LiveView
+from server.scene_routes import add_scene_routes
+from server.upkeep import Upkeep
 
 if TYPE_CHECKING:
+    from server.archive import Archive
     from server.rig import Rig
     from server.rig_changes import RigChanges
 
@@ -69,6 +78,10 @@ ROOMS = (
     controllers,
     trajectories,
     runs,
+    run_catalogue,
+    overview,
+    again,
+    exports,
     camera,
     cameras,
     calibration,
@@ -82,9 +95,12 @@ ROOMS = (
 """One router a resource."""
 
 
-def create_app(rig: Rig, hosts: Collection[str] = (), changes: RigChanges | None = None) -> FastAPI:
-    """The application of one rig. hosts: names it may be asked by, beside localhost and its address.
+def create_app(
+    rig: Rig, archive: Archive, hosts: Collection[str] = (), changes: RigChanges | None = None
+) -> FastAPI:
+    """The application of one rig and of the archive that its runs go to; it closes both when it ends.
 
+    hosts: names it may be asked by, beside localhost and its address.
     changes: the rig's file, when it has one that may be changed.
     """
     app = FastAPI(
@@ -96,13 +112,16 @@ def create_app(rig: Rig, hosts: Collection[str] = (), changes: RigChanges | None
         lifespan=lifespan,
     )
     app.state.rig = rig
+    app.state.archive = archive
     app.state.rig_changes = changes
     app.state.pictures = Pictures(rig)
     app.state.camera_calibration = CameraCalibration(rig)
     app.state.calibration_runs = CalibrationRuns(rig)
     app.state.colour_picker = ColourPicker(rig)
     app.state.tick_text = TickText()
-    app.state.scene = SceneFeed(rig, lambda: scene_geometry(rig))
+    app.state.scene = SceneFeed(rig.updates, LiveView(rig))
+    app.state.replays = ReplaySessions()
+    app.state.workshop = Workshop()
     app.add_middleware(Door, hosts=hosts)
     problems.install(app)
     add_routes(app)
@@ -113,8 +132,10 @@ def create_app(rig: Rig, hosts: Collection[str] = (), changes: RigChanges | None
 async def lifespan(app: FastAPI) -> AsyncIterator[None]:
     """The rig stops before everything else does, and whatever else fails: its stop zeroes the coils."""
     rig, scene, changes = app.state.rig, app.state.scene, app.state.rig_changes
+    archive, upkeep = app.state.archive, Upkeep(app.state.archive, rig)
     await rig.start()
     try:
+        upkeep.start()
         await app.state.pictures.start()
         await start_scene(scene)
         if changes is not None:
@@ -124,12 +145,16 @@ async def lifespan(app: FastAPI) -> AsyncIterator[None]:
         try:
             await rig.stop()
         finally:
+            written = asyncio.create_task(asyncio.to_thread(archive.recorder.close), name="last recording")
             await app.state.calibration_runs.stop()
             if changes is not None:
                 await changes.stop()
             end_streams(app)
             await scene.stop()
             app.state.pictures.close()
+            await upkeep.stop()
+            await written
+            await asyncio.to_thread(archive.close)
 
 
 async def start_scene(scene: SceneFeed) -> None:
@@ -145,27 +170,16 @@ def end_streams(app: FastAPI) -> None:
     app.state.rig.announcements.close()
 
 
-def scene_geometry(rig: Rig) -> SceneGeometry:
-    robot = rig.settings.robot
-    return SceneGeometry(
-        coils=rig.coils,
-        workspace=rig.coils.workspace,
-        length=robot.length_mm * MM,
-        width=robot.body_width_mm * MM,
-        height=robot.body_height_mm * MM,
-    )
-
-
 def add_routes(app: FastAPI) -> None:
     api = APIRouter(prefix=PREFIX, responses=RESPONSES)
     for room in ROOMS:
         api.include_router(room.router)
     api.include_router(camera.sockets)
+    api.include_router(replay.sockets)
     app.include_router(api)
     app.add_api_route("/", page, include_in_schema=False)
     app.add_api_route("/docs", docs, include_in_schema=False)
-    app.add_api_websocket_route("/scene", scene_socket)
-    app.add_route("/scene/", scene_page, include_in_schema=False)
+    add_scene_routes(app)
     app.mount("/static", FreshFiles(directory=WEB_FOLDER))
 
 
@@ -175,11 +189,3 @@ async def page() -> FileResponse:
 
 async def docs() -> FileResponse:
     return FileResponse(DOCS_PAGE, headers=ALWAYS_ASK)
-
-
-async def scene_socket(socket: WebSocket) -> None:
-    feed: SceneFeed = socket.app.state.scene
-    if feed.scene is None:
-        await socket.close(1013, "the 3D scene is not running")
-        return
-    await feed.bridge.serve(socket)

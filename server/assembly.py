@@ -20,6 +20,7 @@ from control.simulation.faults.injection import Faults
 from control.simulation.world import World
 from server.data_folder import data_folder
 from server.optics import calibration_problem, model_in_use
+from server.recording.disk import Disk
 from server.seams import FaultySeams, Seams
 from server.settings import MM, MS, RigFile
 from server.settings_in_si import (
@@ -48,7 +49,7 @@ TRAFFIC_LOG = "link-traffic.log"
 
 @dataclass(slots=True)
 class Machine:
-    """A rig's parts, wired. world: None on a real rig."""
+    """A rig's parts, wired. world: None on a real rig.  disk: where recordings go."""
 
     settings: RigFile
     camera: Camera
@@ -61,6 +62,7 @@ class Machine:
     world: World | None
     faults: Faults | None
     traffic: TrafficLog | None
+    disk: Disk
 
     def open(self, *, patiently: bool = False, camera_may_come: bool = False) -> None:
         """Wait for the camera and open the link; raises `CameraError` and `LinkError`.
@@ -113,7 +115,10 @@ def build_machine(settings: RigFile, *, realtime: bool, data: Path | None = None
         faults = seams.faults(camera.now, loop)
         devices.pop_all()  # the machine closes them from now on
     body_height = settings.robot.body_height_mm * MM
-    return Machine(settings, camera, model, body_height, tracker, coils, link, loop, world, faults, traffic)
+    disk = seams.disk()
+    return Machine(
+        settings, camera, model, body_height, tracker, coils, link, loop, world, faults, traffic, disk
+    )
 
 
 def _traffic(settings: RigFile, link: Link, camera: Camera, data: Path | None) -> TrafficLog | None:

@@ -25,6 +25,13 @@ def keep_previous(path: Path, text: str) -> None:
     _put(_written(path, text.encode("utf-8")), previous_of(path))
 
 
+def replace_file(path: Path, text: str) -> None:
+    """Save without keeping what was there before; raises OSError."""
+    path = path.resolve()
+    _put(_written(path, text.encode("utf-8")), path)
+    _sync_folder(path.parent)
+
+
 class Staged:
     """The new text of a file, complete and synced beside it. Use as a context: what is not committed is removed.
 

@@ -6,6 +6,7 @@ import asyncio
 import contextlib
 from collections.abc import Callable
 from datetime import UTC, datetime
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,8 +25,13 @@ from server.run_list import new_id
 from server.settings import RigFile
 from server.vision_settings import tracker_settings
 
+if TYPE_CHECKING:
+    from server.recording.recorder import Recorder
+
 ESTOP_ANSWER = 0.5
 """An emergency stop is answered after this long at the latest, s; the coils have been stopped at once."""
+DISK_ANSWERS = 3.0
+"""A disk that takes longer to make an empty file is in no state to be recorded to, s."""
 TURN_WITHIN = 10.0
 """A tick, or an exchange of the machine with a slow camera, is over after this long, s."""
 
@@ -33,9 +39,10 @@ TURN_WITHIN = 10.0
 class Rig(RigLife):
     """One rig, opened: start it, ask it, stop it."""
 
-    def __init__(self, machine: Machine, build: Build | None = None) -> None:
-        """build: makes another machine when settings are changed; by default like `machine`, in real time."""
-        super().__init__(machine, build)
+    def __init__(
+        self, machine: Machine, build: Build | None = None, recorder: Recorder | None = None
+    ) -> None:
+        super().__init__(machine, build, recorder)
         self._stops_before_exchange = 0
 
     # Requests ------------------------------------------------------------------------------------
@@ -71,12 +78,25 @@ class Rig(RigLife):
 
     async def start_run(self, request: RunRequest) -> Run:
         run = Run(new_id(), request, RunState.RUNNING, datetime.now(UTC))
+        await self._require_recording()
         await self._ask(lambda: self._start(run))
         return self.runs.of(run.id)
+
+    async def _require_recording(self) -> None:
+        """Raises `Refused` where the run could not be recorded; a disk that hangs holds up no tick."""
+        try:
+            async with asyncio.timeout(DISK_ANSWERS):
+                await asyncio.to_thread(self._recording.check, self._machine)
+        except TimeoutError:
+            raise Refused(
+                f"the folder of the recordings has not answered for {DISK_ANSWERS:.0f} s; see to its disk, or switch "
+                "recording off in the rig file"
+            ) from None
 
     def _start(self, run: Run) -> None:
         """On the rig's thread: the run is listed from the instant at which it may also end."""
         self._loop.start(run.id, run.request)
+        self._recording.begin(self._machine, run)
         self._trail.clear()
         self.runs.start(run)
 
@@ -91,6 +111,7 @@ class Rig(RigLife):
         run = self.runs[0]
         selection = change(run.request.selection)
         self._loop.change(selection)
+        self._recording.change(selection)
         self.runs.change_newest(selection)
         return run.id
 

@@ -10,9 +10,10 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import logging
+from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from control.coils import CoilSet
 from control.model import Frame
@@ -27,10 +28,14 @@ from server.event_log import EventLog
 from server.exchange import Build
 from server.rig_thread import RigThread
 from server.run_list import RunList
+from server.run_recording import RunRecording
 from server.settings import RigFile
 from server.streams import Publisher
 from server.trail import Trail
 from server.watchdog import Hang, Watchdog, stopped
+
+if TYPE_CHECKING:
+    from server.recording.recorder import Recorder
 
 T = TypeVar("T")
 
@@ -38,6 +43,10 @@ log = logging.getLogger(__name__)
 
 FRAME_TIMEOUT = 0.034
 """A tick happens at least this often, frame or not, s: the third without a frame finds the camera dead (102 ms)."""
+ENDED = "pivotrig was ended"
+"""Why a run ends that goes on when the program does."""
+LINES_WAITING = 1000
+"""Lines of the log that wait to be told."""
 LAST_TURN = 2.0
 """At the end an exchange that goes on is waited for, but not for ever, s (gone within 5 s, faults.md row 16)."""
 
@@ -45,11 +54,18 @@ LAST_TURN = 2.0
 class RigLife:
     """One rig, opened: start it, watch it, stop it. `server.rig.Rig` can be asked for something, too."""
 
-    def __init__(self, machine: Machine, build: Build | None = None) -> None:
-        """build: makes another machine when settings are changed; by default like `machine`, in real time."""
+    def __init__(
+        self, machine: Machine, build: Build | None = None, recorder: Recorder | None = None
+    ) -> None:
+        """build: makes another machine when settings are changed; by default like `machine`, in real time.
+
+        recorder: keeps the runs; None: nothing is kept of them.
+        """
         self._machine = machine
         self._build = build or (lambda settings: build_machine(settings, realtime=True))
         self._loop = machine.loop
+        self._recording = RunRecording(recorder)
+        self._lines: deque[Announcement] = deque(maxlen=LINES_WAITING)
         self._thread = RigThread()
         self._task: asyncio.Task[None] | None = None
         self._watchdog = Watchdog(lambda: self._loop.deciding)
@@ -112,12 +128,13 @@ class RigLife:
 
     async def start(self) -> None:
         """Open the link and start the loop; a board or a camera that is not there yet is waited for, disarmed."""
+        self._recording.start()
         await self._thread.begin(lambda: self._machine.open(patiently=True, camera_may_come=True))
         self._task = asyncio.create_task(self._run(), name="control loop")
 
     async def stop(self) -> None:
         """Zero the coils, end the loop and close everything; safe to call twice."""
-        self.stop_coils()
+        self.stop_coils("ended", ENDED)
         self.updates.close()
         self.announcements.close()
         if self._task is not None:
@@ -125,14 +142,24 @@ class RigLife:
             await asyncio.gather(self._task, return_exceptions=True)  # what it failed with has been told of
         with contextlib.suppress(Refused):
             async with self._thread.turn(LAST_TURN):
+                if not self.hangs:
+                    await self._thread.begin(self._end_run)
                 await asyncio.to_thread(self._close)
                 return
         await asyncio.to_thread(self._close)
 
-    def stop_coils(self) -> None:
+    def stop_coils(self, code: str = "estop", reason: str = "emergency stop") -> None:
         """Zero now; for signal handlers."""
         self._stops += 1
-        self._machine.stop_coils()
+        self._machine.loop.estop(code, reason)
+
+    def _end_run(self) -> None:
+        """The program ends, and so does a run; its recording says why."""
+        try:
+            self._loop.abort_run("ended", ENDED)
+            self._heed_news()
+        except Exception:  # a loop that has failed is closed all the same
+            log.exception("the run could not be ended in good order")
 
     def _close(self) -> None:
         self._machine.camera.close()
@@ -166,7 +193,9 @@ class RigLife:
         """The loop is broken for good: zero current, and say so to everybody who watches."""
         self._machine.stop_coils()
         log.exception("the control loop failed")
-        self._show_fault(f"the control loop failed ({error!r}); restart pivotrig")
+        reason = f"the control loop failed ({error!r}); restart pivotrig"
+        self._abort_run(reason)
+        self._show_fault(reason)
 
     def _show_fault(self, reason: str) -> None:
         self.snapshot = replace(self.snapshot, rig=RigState.FAULT, reason=reason)
@@ -177,12 +206,17 @@ class RigLife:
         self._loop.estop(hang.code, hang.reason)
         log.error("%s", hang.reason)
         self._thread.hangs = True
-        if self.snapshot.run is not None:
-            self.runs.abort(self.snapshot.run.id, hang.reason)
-        self.snapshot = stopped(self.snapshot, hang)
         self.announce("error", hang.code, hang.reason)
+        self._abort_run(hang.reason)
+        self.snapshot = stopped(self.snapshot, hang)
         self._log.tell_runs(self.runs.take_news())
         self.updates.publish(self.snapshot)
+
+    def _abort_run(self, reason: str) -> None:
+        """The loop itself will not say how its run has ended."""
+        if self.snapshot.run is not None:
+            self.runs.abort(self.snapshot.run.id, reason)
+            self._recording.abort(reason)
 
     def _one_tick(self) -> Snapshot:
         frame = self._machine.camera.read(FRAME_TIMEOUT)
@@ -190,9 +224,25 @@ class RigLife:
             self.frame = frame
         for note in self._machine.camera.take_notes():
             self._loop.announce(note.severity, "camera", note.message)
-        snapshot = self._loop.tick(frame, self._machine.camera.now())
+        snapshot = self._tick(frame)
         self._show(snapshot)
         return snapshot
+
+    def _tick(self, frame: Frame | None) -> Snapshot:
+        self._recording.heed(self._loop)
+        snapshot = self._loop.tick(frame, self._machine.camera.now())
+        snapshot = self._recording.keep(snapshot, frame)
+        self._heed_news()
+        return snapshot
+
+    def _heed_news(self) -> None:
+        """On the rig's thread: what the loop has to tell goes to the recording in the order in which it happened."""
+        for line in self._loop.take_announcements():
+            self._recording.tell(line)
+            self._lines.append(line)
+        for ended in self._loop.take_ended():
+            self._recording.end(ended)
+            self.runs.end(ended)
 
     # Watchers ------------------------------------------------------------------------------------
 
@@ -219,15 +269,15 @@ class RigLife:
         """Publish the newest snapshot, and what the loop has announced since the last one."""
         self._trail.follow(self.snapshot)
         self.updates.publish(self.snapshot)
-        for announcement in self._loop.take_announcements():
-            self._log.add(announcement)
-        for ended in self._loop.take_ended():
-            self.runs.end(ended)
+        for _ in range(len(self._lines)):
+            self._log.add(self._lines.popleft())
         self._log.tell_runs(self.runs.take_news())
 
     def announce(self, severity: str, code: str, message: str) -> None:
         """Put something into the event log and tell everybody who watches."""
-        self._log.add(Announcement(self.snapshot.time, severity, code, message))
+        line = Announcement(self.snapshot.time, severity, code, message)
+        self._recording.tell(line)
+        self._log.add(line)
 
     # Between two ticks ---------------------------------------------------------------------------
 
@@ -242,7 +292,7 @@ class RigLife:
         return answer
 
     def _look_again(self) -> Snapshot:
-        return self._loop.tick(None, self._machine.camera.now())
+        return self._tick(None)
 
     async def between_ticks(self, work: Callable[[], T]) -> T:
         """Do something to the rig's parts on the thread that owns them; raises `Refused` when that hangs."""

@@ -67,6 +67,14 @@ class RunList:
                     self._news.append((run.state.value, run))
                     return
 
+    def forget(self, id: str) -> bool:
+        """Take a run that has ended off the list; whether it was on it."""
+        with self._one_at_a_time:
+            ended = [run for run in self._runs if run.id == id and run.state is not RunState.RUNNING]
+            for run in ended:
+                self._runs.remove(run)
+        return bool(ended)
+
     def take_news(self) -> list[News]:
         """What happened since the last call, oldest first."""
         return [self._news.popleft() for _ in range(len(self._news))]

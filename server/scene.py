@@ -1,4 +1,4 @@
-"""The rig in three dimensions, in Viser: coils to scale, the field, the robot with its tilt, path and trail.
+"""A rig in three dimensions, in Viser: coils to scale, the field, robots with their tilt, paths and trails.
 
 Viser listens on loopback only and is reached through `server.scene_bridge`. Nothing in it can act on the rig.
 The scene's unit is the centimetre: Viser's near plane and lights suit lengths of 1 to 100.
@@ -8,57 +8,33 @@ from __future__ import annotations
 
 import logging
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import rich
 import viser
-from numpy.typing import NDArray
 from viser import _messages as viser_messages
 
-from control.coils import CoilPair, CoilSet
-from control.model import Pose, pivot_point
-from control.snapshot import Snapshot, Vector
-from server.scene_shapes import (
-    FieldArrows,
-    body_attitude,
-    ring_segments,
-    segments_through,
-    square,
-)
+from control.coils import CoilPair
+from control.snapshot import Vector
+from server.scene_geometry import SceneGeometry
+from server.scene_robot import CM, LINE_HEIGHT, LOOKS, Colour, Looks, RobotNodes, ShownRobot
+from server.scene_shapes import FieldArrows, ring_segments, square
 
-CM = 100.0
-"""Scene units per metre."""
-
-Colour = tuple[int, int, int]
 PAIR_COLOURS: dict[str, Colour] = {"x": (213, 94, 0), "y": (0, 158, 115), "z": (0, 114, 178)}
 """Okabe and Ito's palette, which survives colour blindness."""
 PLATE: Colour = (74, 80, 88)
 FRAME: Colour = (178, 184, 192)
-BODY: Colour = (196, 52, 46)
-END_A: Colour = (86, 180, 233)
-END_B: Colour = (230, 159, 0)
-PIVOT: Colour = (255, 255, 255)
-PATH: Colour = (86, 180, 233)
-TRAIL: Colour = (204, 121, 167)
-
-CAP = 0.2
-"""Share of the body's length that each end's colour takes."""
-LINE_HEIGHT = 0.0004
-"""Lines on the plate float that high above it, m, so that they do not flicker into it."""
-LONGEST_LINE = 240
-"""Points of a drawn path or trail; more are thinned out."""
 
 
 @dataclass(frozen=True, slots=True)
-class SceneGeometry:
-    """Lengths in m. workspace: half the square's side.  length: between the pivots.  width, height: body."""
+class View:
+    """What the scene shows at one instant. currents: of the coils, A.  robots: as many as the scene has looks."""
 
-    coils: CoilSet
-    workspace: float
-    length: float
-    width: float
-    height: float
+    geometry: SceneGeometry
+    currents: Vector
+    robots: Sequence[ShownRobot]
 
 
 def start_viser() -> viser.ViserServer:
@@ -81,9 +57,11 @@ def label_place(pair: CoilPair) -> Vector:
 
 
 class Scene:
-    """All nodes of the scene and how they follow a snapshot. It blocks: use it off the event loop."""
+    """All nodes of the scene and how they follow a view. It blocks: use it off the event loop."""
 
-    def __init__(self, geometry: SceneGeometry) -> None:
+    def __init__(self, geometry: SceneGeometry, looks: Sequence[Looks] = LOOKS[:1]) -> None:
+        """looks: one for each robot that there is to see."""
+        self._looks = looks
         self.server = start_viser()
         self._first_view()
         self._build(geometry)
@@ -93,9 +71,10 @@ class Scene:
         self._arrows = FieldArrows(geometry.coils, geometry.workspace)
         self._light()
         self._furniture()
-        self._robot_nodes()
-        self._moving_nodes()
-        self._drawn: dict[str, NDArray[np.float64]] = {}
+        self._field_nodes()
+        roots = ("", *(f"/compared/{number}" for number in range(1, len(self._looks))))
+        pairs = zip(roots, self._looks, strict=True)
+        self.robots = [RobotNodes(self.server.scene, root, geometry.robot, looks) for root, looks in pairs]
 
     def rebuild(self, geometry: SceneGeometry) -> None:
         """Draw another rig in place of this one; who looks keeps the view."""
@@ -110,13 +89,14 @@ class Scene:
     def stop(self) -> None:
         self.server.stop()
 
-    def show(self, snapshot: Snapshot, path: NDArray[np.float64], trail: NDArray[np.float64]) -> None:
-        """Bring the scene up to date. path, trail: (n, 2) m."""
+    def show(self, view: View) -> None:
+        """Bring the scene up to date; with another geometry it is drawn anew."""
+        if view.geometry is not self._geometry:
+            self.rebuild(view.geometry)
         with self.server.atomic():
-            self._show_field(snapshot)
-            self._show_robot(snapshot)
-            self._show_line("path", path)
-            self._show_line("trail", trail)
+            self._show_field(view.currents)
+            for nodes, robot in zip(self.robots, view.robots, strict=True):
+                nodes.show(robot)
 
     def _light(self) -> None:
         scene = self.server.scene
@@ -148,23 +128,9 @@ class Scene:
         place = self._geometry.coils.registration.to_workspace(np.array(label_place(pair))) * CM
         self.server.scene.add_label(f"{name}/label", label, position=tuple(place))
 
-    def _robot_nodes(self) -> None:
-        scene = self.server.scene
-        size = self._geometry
-        length, width, height = size.length * CM, size.width * CM, size.height * CM
-        self._robot = scene.add_frame("/robot", show_axes=False)
-        scene.add_box("/robot/body", BODY, (width, length * (1 - 2 * CAP), height))
-        for name, colour, side in (("A", END_A, 1.0), ("B", END_B, -1.0)):
-            at = side * length * (0.5 - 0.5 * CAP)
-            scene.add_box(f"/robot/{name}", colour, (width, length * CAP, height), position=(0.0, at, 0.0))
-            above = (0.0, side * length * 0.7, height)
-            scene.add_label(f"/robot/{name}/label", name, position=above, font_size_mode="screen")
-        self._pivot = scene.add_icosphere("/pivot", radius=0.14, color=PIVOT)
-
-    def _moving_nodes(self) -> None:
-        scene = self.server.scene
+    def _field_nodes(self) -> None:
         points, colours = self._arrows.for_currents((0.0, 0.0, 0.0))
-        self._field = scene.add_arrows(
+        self._field = self.server.scene.add_arrows(
             "/field",
             points * CM,
             colours,
@@ -173,39 +139,9 @@ class Scene:
             head_length=0.3,
             visible=False,
         )
-        nothing = np.zeros((1, 2, 3))
-        self._lines = {
-            "path": scene.add_line_segments("/path", nothing, PATH, thickness=0.08, visible=False),
-            "trail": scene.add_line_segments("/trail", nothing, TRAIL, thickness=0.07, visible=False),
-        }
 
-    def _show_field(self, snapshot: Snapshot) -> None:
-        points, colours = self._arrows.for_currents(snapshot.currents)
-        self._field.visible = self._arrows.is_visible(snapshot.currents)
+    def _show_field(self, currents: Vector) -> None:
+        points, colours = self._arrows.for_currents(currents)
+        self._field.visible = self._arrows.is_visible(currents)
         self._field.points = (points * CM).astype(np.float32)
         self._field.colors = colours
-
-    def _show_robot(self, snapshot: Snapshot) -> None:
-        self._robot.visible = self._pivot.visible = snapshot.pose is not None
-        if snapshot.pose is None:
-            return
-        self._place_body(snapshot.pose, snapshot)
-        pivot = pivot_point(snapshot.pose, snapshot.command.pivot, self._geometry.length)
-        self._pivot.position = (pivot[0] * CM, pivot[1] * CM, 0.0)
-
-    def _place_body(self, pose: Pose, snapshot: Snapshot) -> None:
-        position, wxyz = body_attitude(
-            pose, snapshot.command.pivot, snapshot.body_tilt, self._geometry.length, self._geometry.height
-        )
-        self._robot.position = np.array(position) * CM
-        self._robot.wxyz = wxyz
-
-    def _show_line(self, name: str, points: NDArray[np.float64]) -> None:
-        """Sent only when it has changed: a path does not for minutes."""
-        if name in self._drawn and np.array_equal(self._drawn[name], points):
-            return
-        self._drawn[name] = points.copy()
-        segments = segments_through(points, LINE_HEIGHT, LONGEST_LINE)
-        self._lines[name].visible = len(segments) > 0
-        if len(segments):
-            self._lines[name].points = (segments * CM).astype(np.float32)

@@ -1,50 +1,53 @@
-"""Keeps the scene up to date while somebody looks at it, on a thread of its own."""
+"""Keeps a scene up to date while somebody looks at it, on a thread of its own."""
 
 from __future__ import annotations
 
 import asyncio
 import logging
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from typing import TYPE_CHECKING, Any
+from typing import Any, Generic, Protocol, TypeVar
 
-import numpy as np
-
-from server.scene import Scene, SceneGeometry
+from server.scene import Scene, View
 from server.scene_bridge import SceneBridge
-from server.streams import Cadence, Mailbox, StreamEnded
+from server.scene_geometry import SceneGeometry
+from server.scene_robot import LOOKS, Looks
+from server.streams import Cadence, Mailbox, Publisher, StreamEnded
 
-if TYPE_CHECKING:
-    from control.snapshot import Snapshot
-    from server.rig import Rig
+T = TypeVar("T")
+T_contra = TypeVar("T_contra", contravariant=True)
 
 log = logging.getLogger(__name__)
 
 PERIOD = 1.0 / 20.0
 """Shortest time between two updates, s."""
-PATH_EVERY = 10
-"""The path is asked for at each tenth update: it is worked out point by point and seldom changes."""
 
 
-class SceneFeed:
-    """The scene's life: Viser starts with the application, is fed while it has viewers, and ends with it."""
+class Source(Protocol[T_contra]):
+    """How that looks which there is to show. geometry: of the rig as it is now."""
 
-    def __init__(self, rig: Rig, geometry: Callable[[], SceneGeometry]) -> None:
-        """geometry: of the rig as it is now; asked for again when its settings have changed."""
-        self._rig = rig
-        self._drawn_settings = rig.settings
-        self._geometry = geometry
+    @property
+    def geometry(self) -> SceneGeometry: ...
+
+    def view(self, value: T_contra, /) -> View: ...
+
+
+class SceneFeed(Generic[T]):
+    """A scene's life: its Viser starts, is fed while it has viewers, and ends."""
+
+    def __init__(self, updates: Publisher[T], source: Source[T], looks: Sequence[Looks] = LOOKS[:1]) -> None:
+        """updates: what there is to show, newest only.  looks: one for each robot."""
+        self._updates = updates
+        self._source = source
+        self._looks = looks
         self._thread = ThreadPoolExecutor(1, thread_name_prefix="scene")
         self._watched = asyncio.Event()
         self._task: asyncio.Task[None] | None = None
-        self._updates = 0
-        self._path = np.zeros((0, 2))
         self.scene: Scene | None = None
         self.bridge = SceneBridge(self._viser_port, self._viewers_changed)
 
     async def start(self) -> None:
-        loop = asyncio.get_running_loop()
-        self.scene = scene = await loop.run_in_executor(self._thread, Scene, self._geometry())
+        self.scene = scene = await self._on_thread(Scene, self._source.geometry, self._looks)
         self._task = asyncio.create_task(self._feed(scene), name="scene feed")
 
     async def stop(self) -> None:
@@ -52,7 +55,7 @@ class SceneFeed:
             self._task.cancel()
             await asyncio.gather(self._task, return_exceptions=True)
         if self.scene is not None:
-            await asyncio.get_running_loop().run_in_executor(self._thread, self.scene.stop)
+            await self._on_thread(self.scene.stop)
         self._thread.shutdown()
 
     def _viser_port(self) -> int:
@@ -67,9 +70,8 @@ class SceneFeed:
             self._watched.clear()
 
     async def _feed(self, scene: Scene) -> None:
-        loop = asyncio.get_running_loop()
-        cadence = Cadence(PERIOD, loop.time, asyncio.sleep)
-        async with self._rig.updates.subscribe() as mailbox:
+        cadence = Cadence(PERIOD, asyncio.get_running_loop().time, asyncio.sleep)
+        async with self._updates.subscribe() as mailbox:
             while True:
                 await self._watched.wait()
                 try:
@@ -81,16 +83,8 @@ class SceneFeed:
                     await asyncio.sleep(1.0)
                 await cadence.wait()
 
-    async def _show_next(self, scene: Scene, mailbox: Mailbox[Snapshot]) -> None:
-        snapshot = await mailbox.get()
-        if self._drawn_settings is not self._rig.settings:
-            self._drawn_settings = self._rig.settings
-            await self._on_thread(scene.rebuild, self._geometry())
-            self._updates = 0
-        if self._updates % PATH_EVERY == 0:
-            self._path = self._rig.reference_points()
-        self._updates += 1
-        await self._on_thread(scene.show, snapshot, self._path, self._rig.trail())
+    async def _show_next(self, scene: Scene, mailbox: Mailbox[T]) -> None:
+        await self._on_thread(scene.show, self._source.view(await mailbox.get()))
 
-    async def _on_thread(self, draw: Callable[..., None], *what: Any) -> None:
-        await asyncio.get_running_loop().run_in_executor(self._thread, draw, *what)
+    async def _on_thread(self, draw: Callable[..., Any], *what: Any) -> Any:
+        return await asyncio.get_running_loop().run_in_executor(self._thread, draw, *what)

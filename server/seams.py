@@ -9,11 +9,14 @@ from control.link.conversion import Configuration
 from control.link.port import Link
 from control.loop import ControlLoop
 from control.perception import Tracker
+from control.simulation.disk_faults import DiskFaults
 from control.simulation.faults.injection import Faults
 from control.simulation.faults.parts import FaultyController, FaultyLink, FaultyTracker
 from control.simulation.faults.points import Decisions, FaultPoints, Nominal, Reports, Sighting
 from control.simulation.line_faults import LineFaults
 from control.simulation.world import World
+from server.faulty_disk import FaultyDisk
+from server.recording.disk import Disk, LocalDisk
 from server.settings import RigFile
 from vision.simulated.camera import SyntheticCamera
 
@@ -32,6 +35,10 @@ class Seams:
     def controller(self, controller: Law) -> Law:
         return controller
 
+    def disk(self) -> Disk:
+        """Where recordings go."""
+        return LocalDisk()
+
     def faults(self, clock: Clock, loop: ControlLoop) -> Faults | None:  # noqa: ARG002 (the other seams need them)
         """What can be injected, None on a real rig."""
         return None
@@ -48,6 +55,7 @@ class FaultySeams(Seams):
         self._sighting = Sighting()
         self._reports = Reports()
         self._decisions = Decisions()
+        self._disk = DiskFaults(camera.now)
 
     def link(self, port: str, baud: int, configuration: Configuration, clock: Clock) -> Link:
         link = FaultyLink(port, baud, configuration, clock, self.line.wrap)
@@ -60,6 +68,9 @@ class FaultySeams(Seams):
     def controller(self, controller: Law) -> Law:
         return FaultyController(controller, self._decisions, self._camera.pass_time)
 
+    def disk(self) -> Disk:
+        return FaultyDisk(LocalDisk(), self._disk)
+
     def faults(self, clock: Clock, loop: ControlLoop) -> Faults:
         points = FaultPoints(
             camera=self._camera,
@@ -71,6 +82,7 @@ class FaultySeams(Seams):
             sighting=self._sighting,
             reports=self._reports,
             decisions=self._decisions,
+            disk=self._disk,
         )
         faults = Faults(points, clock, loop.announce)
         self._world.attend(faults.attend)

@@ -17,14 +17,19 @@ from types import FrameType
 from typing import NoReturn
 
 import uvicorn
+from fastapi import FastAPI
 
 from control.link.conversion import LinkError
 from server.app import create_app, end_streams
-from server.assembly import build_machine
+from server.archive import Archive
+from server.assembly import Machine, build_machine
+from server.catalogue.errors import CatalogueError
 from server.door import MESSAGE_LIMIT
+from server.exchange import Build
 from server.rig import Rig
 from server.rig_changes import RigChanges
 from server.rig_file import RigStore
+from server.rig_life import ENDED
 from server.settings import RigFile
 from server.signals import ESTOP, handled
 from vision.sources.opening import CameraError
@@ -40,10 +45,11 @@ be longer than the whole way from a frame to its command."""
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """Where to listen; port 0 picks a free one."""
+    """Where to listen; port 0 picks a free one. fragment: what of the dashboard its address leads to."""
 
     host: str
     port: int
+    fragment: str = ""
 
 
 class ServeError(Exception):
@@ -60,19 +66,33 @@ def serve_rig(
     sys.setswitchinterval(TURN)
     build = partial(build_machine, realtime=True, data=data)
     try:
-        machine = build(as_run(store.settings))
-    except (ValueError, LinkError, CameraError, OSError) as error:
+        machine, archive = _open(build, as_run(store.settings), data)
+    except ServeError:
         listener.close()
-        raise ServeError(str(error)) from error
-    address = _address(listener)
-    rig = Rig(machine, build)
-    server = _Server(rig, RigChanges(rig, store, as_run), address, open_browser)
+        raise
+    address = _address(listener) + place.fragment
+    rig = Rig(machine, build, archive.recorder)
+    application = create_app(rig, archive, changes=RigChanges(rig, store, as_run))
+    server = _Server(rig, application, address, open_browser)
     with listener, handled({ESTOP: server.handle_estop, signal.SIGHUP: server.handle_exit}):
         server.run(sockets=[listener])
     if server.failure is not None:
         raise ServeError(f"the rig could not be opened: {server.failure}")
     if server.hangs:
         _leave("the control loop never came back")
+
+
+def _open(build: Build, settings: RigFile, data: Path) -> tuple[Machine, Archive]:
+    """The rig and the archive of its runs; the application closes both."""
+    try:
+        archive = Archive.open(data)
+    except CatalogueError as error:
+        raise ServeError(str(error)) from error
+    try:
+        return build(settings), archive
+    except (ValueError, LinkError, CameraError, OSError) as error:
+        archive.close()
+        raise ServeError(str(error)) from error
 
 
 def _leave(reason: str) -> NoReturn:
@@ -84,12 +104,12 @@ def _leave(reason: str) -> NoReturn:
 class _Server(uvicorn.Server):
     """uvicorn, but a signal zeroes the coils before anything else, and readiness is announced."""
 
-    def __init__(self, rig: Rig, changes: RigChanges, address: str, open_browser: bool) -> None:
+    def __init__(self, rig: Rig, application: FastAPI, address: str, open_browser: bool) -> None:
         self._rig = rig
         self._address = address
         self._open_browser = open_browser
         self.failure: BaseException | None = None
-        self._application = create_app(rig, changes=changes)
+        self._application = application
         config = uvicorn.Config(
             self._application,
             log_level="warning",
@@ -107,7 +127,7 @@ class _Server(uvicorn.Server):
 
     def handle_exit(self, sig: int, frame: FrameType | None) -> None:  # noqa: ARG002 (uvicorn's signature)
         """Zero current first. The exit is then an orderly one, and the status 0; a second Ctrl-C cuts it short."""
-        self._rig.stop_coils()
+        self._rig.stop_coils("ended", ENDED)
         self.force_exit = self.should_exit and sig == signal.SIGINT
         self.should_exit = True
 

@@ -12,6 +12,7 @@ from pydantic import Field, field_validator, model_validator
 from control.simulation.wiring import Wiring
 from server.camera_sections import LIVE, SIMULATED_CAMERA, CameraSection
 from server.coil_sections import Coils, LimitsSection, PerCoil, RegistrationSection
+from server.recording_section import RecordingSection
 from server.section import NOT_MEASURED, Section
 from server.vision_section import VisionSection
 from vision.simulated.scene_names import FOR_ANY_LENS
@@ -148,6 +149,7 @@ class RigFile(Section):
     vision: VisionSection = VisionSection()
     estimator: EstimatorSection = EstimatorSection()
     gait: GaitSection = GaitSection()
+    recording: RecordingSection = RecordingSection()
     simulation: SimulationSection = SimulationSection()
 
     @property

@@ -27,12 +27,16 @@ let state = {
   serverErrors: {},
   /** What the camera's setup knows and does (calibration/setup.js), or null while it is closed. */
   setup: null,
+  /** Recorded runs that are shown in place of the rig (replay/replay.js), or null: the rig itself is shown. */
+  replay: null,
   /** The question before a real rig is armed is on the page. */
   consentAsked: false,
   /** Name of the action under way, or null. */
   busy: null,
   messages: [],
-  runs: [],
+  /** Runs as they are listed (runs/listing.js), null before the first answer, and the one whose details are open. */
+  listing: null,
+  inspected: null,
   events: [],
 };
 

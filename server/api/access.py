@@ -14,12 +14,22 @@ from server.api.ticks import TickText
 from server.pictures import Pictures
 
 if TYPE_CHECKING:
+    from server.archive import Archive
+    from server.replay.sessions import ReplaySessions
     from server.rig import Rig
     from server.rig_changes import RigChanges
 
 
 async def the_rig(connection: HTTPConnection) -> Rig:
     return connection.app.state.rig
+
+
+async def the_archive(connection: HTTPConnection) -> Archive:
+    return connection.app.state.archive
+
+
+async def the_replays(connection: HTTPConnection) -> ReplaySessions:
+    return connection.app.state.replays
 
 
 async def the_changes(connection: HTTPConnection) -> RigChanges | None:
@@ -35,6 +45,8 @@ async def the_tick_text(connection: HTTPConnection) -> TickText:
 
 
 TheRig = Annotated["Rig", Depends(the_rig)]
+TheArchive = Annotated["Archive", Depends(the_archive)]
+TheReplays = Annotated["ReplaySessions", Depends(the_replays)]
 TheChanges = Annotated["RigChanges | None", Depends(the_changes)]
 ThePictures = Annotated[Pictures, Depends(the_pictures)]
 TheTickText = Annotated[TickText, Depends(the_tick_text)]

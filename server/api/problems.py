@@ -17,6 +17,7 @@ from starlette.responses import JSONResponse, Response
 from control.registry import UnknownName
 from control.safety import Refused
 from control.trajectories import OutsideWorkspace
+from server.catalogue.errors import BadCursor, CatalogueError, NoSuchRun, NotNow
 
 SHOWN_LENGTH = 80
 
@@ -144,6 +145,7 @@ def install(app: FastAPI) -> None:
     app.add_exception_handler(ValidationError, on_invalid)
     app.add_exception_handler(WebSocketRequestValidationError, on_invalid_socket)
     app.add_exception_handler(OutsideWorkspace, on_outside)
+    app.add_exception_handler(CatalogueError, on_catalogue)
     app.add_exception_handler(HTTPException, on_http)
 
 
@@ -158,6 +160,17 @@ async def on_refused(_: Request, error: Exception) -> Response:
 
 async def on_outside(_: Request, error: Exception) -> Response:
     return invalid_field(("trajectory", "parameters"), str(error)).response()
+
+
+async def on_catalogue(_: Request, error: Exception) -> Response:
+    detail = str(error)
+    if isinstance(error, NoSuchRun):
+        return Problem(404, "Not found", detail).response()
+    if isinstance(error, NotNow):
+        return Problem(409, "Refused", detail).response()
+    if isinstance(error, BadCursor):
+        return invalid_field(("cursor",), detail).response()
+    return Problem(503, "No catalogue", detail).response()
 
 
 async def on_unknown_name(_: Request, error: Exception) -> Response:

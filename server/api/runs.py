@@ -1,42 +1,22 @@
-"""Runs: start one, change it while it goes on, hold it, end it, and look back at this session's."""
+"""Runs: start one, change it while it goes on, hold it, end it."""
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Any
 
-from fastapi import APIRouter, Query
-from pydantic import Field
+from fastapi import APIRouter
 
-from control.metrics import Metrics
 from control.runs import Run, RunRequest, RunState
 from server.api import ticks
 from server.api.access import TheRig
 from server.api.body import StrictRoute
 from server.api.choices import change, selection_json
-from server.api.problems import Problem, Rejected, not_found
+from server.api.problems import Problem, Rejected
 from server.api.schemas import RunBody, SelectionChange
-from server.api.ticks import MILLI, number, scaled
+from server.catalogue.record_json import time_text
+from server.metrics_json import metrics_json as metrics_json
 
 router = APIRouter(tags=["runs"], route_class=StrictRoute)
-
-PAGE = 50
-"""Runs in one answer unless asked otherwise."""
-
-
-def metrics_json(metrics: Metrics) -> dict[str, Any]:
-    return {
-        "mean_error_mm": scaled(metrics.mean_error, MILLI, 6),
-        "normalized_mean_error": number(metrics.normalized_mean_error, 6),
-        "rms_error_mm": scaled(metrics.rms_error, MILLI, 6),
-        "max_error_mm": scaled(metrics.max_error, MILLI, 6),
-        "end_error_mm": scaled(metrics.end_error, MILLI, 6),
-        "travelled_mm": scaled(metrics.travelled, MILLI),
-        "duration_s": number(metrics.duration),
-        "ticks": metrics.ticks,
-        "steps": metrics.steps,
-        "sweeps": metrics.sweeps,
-        "reversals": metrics.reversals,
-    }
 
 
 def run_json(run: Run) -> dict[str, Any]:
@@ -47,7 +27,7 @@ def run_json(run: Run) -> dict[str, Any]:
         "tags": list(request.tags),
         "state": run.state.value,
         "reason": run.reason,
-        "started_at": run.started_at.isoformat(timespec="milliseconds").replace("+00:00", "Z"),
+        "started_at": time_text(run.started_at),
         "passes": request.passes,
         "duration_s": request.duration,
         "unattended": request.unattended,
@@ -69,28 +49,6 @@ async def start(rig: TheRig, body: RunBody | None = None) -> dict[str, Any]:
         tags=tuple(body.tags),
     )
     return run_json(await rig.start_run(request))
-
-
-@router.get("/runs")
-async def list_runs(
-    rig: TheRig,
-    cursor: Annotated[str | None, Query(max_length=80)] = None,
-    limit: Annotated[int, Query(ge=1, le=500)] = PAGE,
-) -> dict[str, Any]:
-    """Newest first; `next` is the cursor of the following page, or null."""
-    runs = list(rig.runs)
-    first = 0 if cursor is None else position(runs, cursor) + 1
-    page = runs[first : first + limit]
-    more = first + limit < len(runs)
-    return {"runs": [run_json(run) for run in page], "next": page[-1].id if more else None}
-
-
-@router.get("/runs/{run_id}")
-async def one(run_id: Annotated[str, Field(max_length=80)], rig: TheRig) -> dict[str, Any]:
-    runs = list(rig.runs)
-    if run_id == "current":
-        return run_json(current(runs))
-    return run_json(runs[position(runs, run_id)])
 
 
 @router.patch("/runs/current")
@@ -129,10 +87,3 @@ def current(runs: list[Run]) -> Run:
     if not runs or runs[0].state is not RunState.RUNNING:
         raise Rejected(Problem(409, "No run", "There is no run at the moment; arm the rig and start one."))
     return runs[0]
-
-
-def position(runs: list[Run], run_id: str) -> int:
-    for index, run in enumerate(runs):
-        if run.id == run_id:
-            return index
-    raise not_found(f"There is no run {run_id!r} in this session.")

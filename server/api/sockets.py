@@ -55,10 +55,10 @@ async def serve(socket: WebSocket, *work: Coroutine[Any, Any, None]) -> None:
         await goodbye(socket)
 
 
-async def goodbye(socket: WebSocket) -> None:
-    """The server is going down: say so, unless the client has gone first."""
+async def goodbye(socket: WebSocket, code: int = 1012, reason: str = "the server is going down") -> None:
+    """Say why this is the end, unless the client has gone first."""
     try:
         async with asyncio.timeout(SEND_TIMEOUT):
-            await socket.close(1012, "the server is going down")
+            await socket.close(code, reason)
     except (TimeoutError, RuntimeError, WebSocketDisconnect):
         log.debug("a client had gone before the farewell")

@@ -14,6 +14,7 @@ from control.snapshot import (
     Fault,
     LinkCounts,
     LinkStatus,
+    RecordingStatus,
     Refusals,
     RunProgress,
     Snapshot,
@@ -66,6 +67,7 @@ def state(snapshot: Snapshot) -> dict[str, Any]:
         "camera": camera(snapshot.camera),
         "loop": loop(snapshot.timing),
         "link": link(snapshot.link),
+        "recording": recording(snapshot.recording),
         "operator": None,
     }
 
@@ -197,6 +199,17 @@ def link_counts(value: LinkCounts) -> dict[str, Any]:
         "board_bad": value.board_bad,
         "refused": value.refused,
         "stale": value.stale,
+    }
+
+
+def recording(value: RecordingStatus) -> dict[str, Any]:
+    return {
+        "state": value.state,
+        "run": value.run,
+        "size_bytes": value.size,
+        "ticks_waiting": value.ticks_waiting,
+        "frames_left_out": value.frames_left_out,
+        "failure": value.failure,
     }
 
 

@@ -30,6 +30,10 @@ RigOption = Annotated[
     ),
 ]
 
+DataOption = Annotated[
+    Path | None, typer.Option("--data", help="Folder for data; default: your user data folder.")
+]
+
 
 def fail(message: str, status: int) -> typer.Exit:
     console.print(f"pivotrig: {message}", style="red", markup=False, highlight=False, soft_wrap=True)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Callable, Iterable
 from typing import Any
 
@@ -11,41 +10,17 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from server.reports.drawing import BLACK, BLUE, GREEN, MM, ORANGE, PURPLE, grid, label
 from server.reports.locomotion import PATH_DISTANCE, STEP_DISTANCE, Locomotion, StraightPath
 from server.reports.simulation import GB, OB, PLANNER, SWEEPS_DEG, Result, Simulation, reference
 
-MM = 1e-3
-DPI = 130
-BLACK, ORANGE, BLUE, GREEN, PURPLE = "#1a1a1a", "#d55e00", "#0072b2", "#009e73", "#8250a8"
-"""Colours that most colour-blind people can tell apart (Okabe and Ito)."""
 COLOURS = {GB: ORANGE, OB: BLUE, PLANNER: GREEN}
 DASHES = {GB: "-", OB: (0, (4, 1.5)), PLANNER: "-"}
 
 
-def png(figure: Figure) -> bytes:
-    stream = io.BytesIO()
-    figure.savefig(stream, format="png", dpi=DPI, metadata={"Software": None})
-    return stream.getvalue()
-
-
-def _grid(rows: int, columns: int, size: tuple[float, float]) -> tuple[Figure, list[Axes]]:
-    figure = Figure(figsize=size, layout="constrained")
-    axes = np.atleast_1d(figure.subplots(rows, columns)).ravel().tolist()
-    for one in axes:
-        one.spines[["top", "right"]].set_visible(False)
-        one.tick_params(labelsize=8)
-    return figure, axes
-
-
-def _label(axes: Axes, x: str, y: str, title: str = "") -> None:
-    axes.set_xlabel(x, fontsize=9)
-    axes.set_ylabel(y, fontsize=9)
-    axes.set_title(title, fontsize=10, loc="left")
-
-
 def paths(found: Locomotion) -> Figure:
     """Straight walks at several sweep angles: the centre, both ends, and the line."""
-    figure, axes = _grid(3, 2, (8.0, 8.2))
+    figure, axes = grid(3, 2, (8.0, 8.2))
     for one, path in zip(axes, found.paths, strict=True):
         _straight_path(one, path)
     handles, labels = axes[0].get_legend_handles_labels()
@@ -61,22 +36,22 @@ def _straight_path(axes: Axes, path: StraightPath) -> None:
         [0.0, PATH_DISTANCE / MM], [0.0, 0.0], color=PURPLE, linestyle="--", linewidth=1.0, label="line"
     )
     axes.set_aspect("equal", adjustable="datalim")
-    _label(axes, "x, mm", "y, mm", f"sweep {path.sweep_deg:.0f}°: {path.steps} steps")
+    label(axes, "x, mm", "y, mm", f"sweep {path.sweep_deg:.0f}°: {path.steps} steps")
 
 
 def steps(found: Locomotion) -> Figure:
-    figure, (axes,) = _grid(1, 1, (7.0, 3.6))
+    figure, (axes,) = grid(1, 1, (7.0, 3.6))
     sweeps = [cost.sweep_deg for cost in found.costs]
     axes.step(sweeps, [cost.steps for cost in found.costs], where="mid", color=BLUE, linewidth=1.4)
     axes.set_yscale("log")
     axes.set_xticks(range(0, 361, 45))
     axes.grid(axis="y", which="major", color="#dddddd", linewidth=0.6)
-    _label(axes, "sweep angle, °", f"steps for {STEP_DISTANCE / MM:.0f} mm")
+    label(axes, "sweep angle, °", f"steps for {STEP_DISTANCE / MM:.0f} mm")
     return figure
 
 
 def travel(found: Locomotion) -> Figure:
-    figure, (axes,) = _grid(1, 1, (7.0, 3.6))
+    figure, (axes,) = grid(1, 1, (7.0, 3.6))
     sweeps = np.array([cost.sweep_deg for cost in found.costs])
     axes.plot(
         sweeps,
@@ -92,20 +67,20 @@ def travel(found: Locomotion) -> Figure:
     axes.set_yscale("log")
     axes.set_xticks(range(0, 361, 45))
     axes.legend(fontsize=8, frameon=False)
-    _label(axes, "sweep angle, °", "way of the centre, mm")
+    label(axes, "sweep angle, °", "way of the centre, mm")
     return figure
 
 
 def eights(found: Simulation) -> Figure:
     """The walks along the eight, one picture for each sweep angle."""
-    figure, axes = _grid(1, 2, (9.0, 5.0))
+    figure, axes = grid(1, 2, (9.0, 5.0))
     for one, sweep_deg in zip(axes, SWEEPS_DEG, strict=True):
         shown = _shown(found, sweep_deg)
         one.plot(*(reference(len(shown[0].error)).T / MM), color=BLACK, linewidth=1.0, label="reference")
         _lines(one, shown, lambda result: result.centre.T / MM)
         one.plot(*(shown[0].centre[0] / MM), "o", color=PURPLE, markersize=5, label="start")
         one.set_aspect("equal")
-        _label(one, "x, mm", "y, mm", f"sweep {sweep_deg}°")
+        label(one, "x, mm", "y, mm", f"sweep {sweep_deg}°")
     figure.legend(
         *axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=5, fontsize=8, frameon=False
     )
@@ -114,19 +89,19 @@ def eights(found: Simulation) -> Figure:
 
 def errors(found: Simulation) -> Figure:
     """Distance from the reference over time."""
-    figure, axes = _grid(2, 1, (8.0, 5.6))
+    figure, axes = grid(2, 1, (8.0, 5.6))
     for one, sweep_deg in zip(axes, SWEEPS_DEG, strict=True):
         shown = _shown(found, sweep_deg)
         _lines(one, shown, lambda result: (0.1 * np.arange(len(result.error)), result.error / MM))
         one.set_ylim(bottom=0.0)
-        _label(one, "time, s", "error, mm", f"sweep {sweep_deg}°")
+        label(one, "time, s", "error, mm", f"sweep {sweep_deg}°")
     axes[0].legend(fontsize=8, frameon=False, ncols=3)
     return figure
 
 
 def choices(found: Simulation) -> Figure:
     """Mean error over completed sweeps: what a smaller error costs."""
-    figure, axes = _grid(1, 2, (9.0, 3.8))
+    figure, axes = grid(1, 2, (9.0, 3.8))
     for one, sweep_deg in zip(axes, SWEEPS_DEG, strict=True):
         for results, colour, name in (
             (found.gains, ORANGE, "Gb, gains 1 to 12"),
@@ -139,7 +114,7 @@ def choices(found: Simulation) -> Figure:
         one.plot(metrics.sweeps, metrics.mean_error / MM, "s", color=BLUE, markersize=5, label="Ob")
         one.set_yscale("log")
         one.margins(x=0.15)
-        _label(one, "completed sweeps", "mean error, mm", f"sweep {sweep_deg}°")
+        label(one, "completed sweeps", "mean error, mm", f"sweep {sweep_deg}°")
     figure.legend(
         *axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=3, fontsize=8, frameon=False
     )

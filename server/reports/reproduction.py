@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from server.api.state import VERSION
-from server.reports import figures, findings, locomotion, page, simulation, tables
+from server.reports import drawing, figures, findings, locomotion, page, simulation, tables
 from server.reports.findings import UNKNOWNS, Finding
 from server.reports.page import Picture
 from server.reports.simulation import Simulation
@@ -58,7 +58,7 @@ def _pictures(walks: locomotion.Locomotion, eights: Simulation) -> dict[str, Pic
         ("errors", "Distance of the centre from the reference (paper: simulation, b).", figures.errors(eights)),
         ("choices", "Mean error over completed sweeps: what a smaller error costs.", figures.choices(eights)),
     )  # fmt: skip
-    return {name: Picture(name, caption, figures.png(figure)) for name, caption, figure in drawn}
+    return {name: Picture(name, caption, drawing.png(figure)) for name, caption, figure in drawn}
 
 
 def _tables(walks: locomotion.Locomotion, eights: Simulation, found: tuple[Finding, ...]) -> dict[str, Table]:

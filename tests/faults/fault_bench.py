@@ -6,20 +6,26 @@ import math
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 from control.coil_heat import CoilHeat
 from control.gait import Gait
 from control.model import Pose, Tracking
 from control.news import Announcement
-from control.runs import Choice, RunRequest, Selection
+from control.runs import Choice, Run, RunRequest, RunState, Selection
 from control.simulation.board import TwinBoard
 from control.simulation.faults.injection import Faults
 from control.simulation.lockstep import Sample
 from control.simulation.world import World
 from control.snapshot import RigState, Snapshot, Vector
+from server.archive import Archive
 from server.assembly import Machine, build_machine
 from server.headless import FRAME_TIMEOUT
+from server.run_list import new_id
+from server.run_recording import RunRecording
 from server.settings import RigFile
 from tests.faults.invariants import Electrics, Trace
 
@@ -74,7 +80,11 @@ class Reaction:
 class FaultBench:
     """A machine that is stepped by hand."""
 
-    def __init__(self, settings: RigFile | None = None) -> None:
+    def __init__(self, settings: RigFile | None = None, archive: Archive | None = None) -> None:
+        """archive: what its runs are recorded in, if anything."""
+        self.archive = archive
+        self.runs: list[str] = []
+        self._recording = RunRecording(None if archive is None else archive.recorder)
         self.machine = build_machine(settings or RigFile().with_simulation(seed=3), realtime=False)
         self.loop = self.machine.loop
         self.trace = Trace()
@@ -104,10 +114,18 @@ class FaultBench:
 
     def tick(self) -> Snapshot:
         frame = self.machine.camera.read(FRAME_TIMEOUT)
-        self.snapshot = self.loop.tick(frame, self.now)
+        self._recording.heed(self.loop)
+        self.snapshot = self._recording.keep(self.loop.tick(frame, self.now), frame)
         self.trace.snapshots.append(self.snapshot)
-        self.trace.events += self.loop.take_announcements()
+        self._heed_news()
         return self.snapshot
+
+    def _heed_news(self) -> None:
+        for line in self.loop.take_announcements():
+            self.trace.events.append(line)
+            self._recording.tell(line)
+        for ended in self.loop.take_ended():
+            self._recording.end(ended)
 
     def run_for(self, duration: float) -> Snapshot:
         until = self.now + duration
@@ -133,9 +151,27 @@ class FaultBench:
 
     def walk(self, selection: Selection = EIGHT) -> None:
         self.arm()
-        self.loop.start("a run", RunRequest(selection))
+        self.walk_on(selection)
+
+    def walk_on(self, selection: Selection = EIGHT) -> None:
+        """Of a rig that is armed."""
+        self.start(RunRequest(selection))
         self.run_for(WALKS_FOR)
         assert self.snapshot.rig is RigState.RUNNING, self.snapshot.reason
+
+    def start(self, request: RunRequest) -> None:
+        """Raises `Refused`, also where the run could not be recorded."""
+        run = Run(new_id(), request, RunState.RUNNING, datetime.now(UTC))
+        self._recording.check(self.machine)
+        self.loop.start(run.id, request)
+        self._recording.begin(self.machine, run)
+        self.runs.append(run.id)
+
+    def recording_at_the_end(self, number: int = 0) -> Path:
+        """The recording of a run, all of them finished; the bench records no more."""
+        assert self.archive is not None
+        self.archive.recorder.close()
+        return self.archive.path_of(self.runs[number])
 
     def go_on(self, tries: int = 1) -> None:
         """Whatever the state asks of the operator, until the robot walks again."""
@@ -217,8 +253,19 @@ def electrics_of(machine: Machine) -> Electrics:
 
 @contextmanager
 def fault_bench(settings: RigFile | None = None) -> Iterator[FaultBench]:
-    bench = FaultBench(settings)
-    try:
+    """A bench whose runs are recorded."""
+    with recorded(settings or RigFile().with_simulation(seed=3)) as bench:
         yield bench
-    finally:
-        bench.machine.close()
+
+
+@contextmanager
+def recorded(settings: RigFile, *, patient: bool = True) -> Iterator[FaultBench]:
+    """patient: the disk is waited for, so that simulated time, which goes faster, is no reason to fail."""
+    with TemporaryDirectory() as folder:
+        archive = Archive.open(Path(folder), patient=patient)
+        bench = FaultBench(settings, archive)
+        try:
+            yield bench
+        finally:
+            bench.machine.close()
+            archive.close()

@@ -5,10 +5,9 @@ I2  drive zero at most the dead-man and one tick after the fault can be noticed;
     limit three time constants of the coil later
 I3  after that no drive before the cause has gone and the operator has asked for it
 I4  the cause in the event log and in the snapshot within a second
+I5  the recording opens, and what it has of the rig's time ends at most 1.25 s before the fault
 I6  the loop's period is unharmed
 I7  nothing left behind (with tests/conftest.py, which watches the threads)
-
-I5 is the recording's, and comes with it.
 """
 
 from __future__ import annotations
@@ -18,11 +17,13 @@ import os
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from pathlib import Path
 
 from control.news import Announcement
 from control.simulation.lockstep import Sample
 from control.simulation.protocol_sim import open_ports
 from control.snapshot import RigState, Snapshot, Vector
+from server.recording.reading import Recording
 
 TICK = 1
 """Of the board, ms."""
@@ -38,6 +39,9 @@ OVERSHOOT_UNSENSED = 0.2
 """The same where the current sense is dead: 24 V drive no more than 9.6 A through 2.5 ohm, 20 % above 8 A."""
 LONGEST_PERIOD = 0.055
 """A tick comes at least this often while no frame does, s: the loop's own time-out and one frame's rounding."""
+
+LOST = 1.25
+"""What a recording may lack of the time before a fault, s (faults.md, I5)."""
 
 ENERGISED = (RigState.ARMED, RigState.RUNNING)
 
@@ -126,6 +130,15 @@ def check_announced(trace: Trace, code: str, fault: float) -> None:
 
 def _words(snapshot: Snapshot) -> tuple[str, ...]:
     return snapshot.reason, *(fault.message for fault in snapshot.faults)
+
+
+def check_recording(path: Path, fault: float) -> None:
+    """I5. fault: when it happened, rig time, s; the run was on."""
+    with Recording.open(path) as recording:
+        newest = recording.tick_at(recording.duration)
+    assert newest is not None, f"I5: no tick in {path.name}"
+    kept_until = newest["/state"]["time_s"]
+    assert kept_until >= fault - LOST, f"I5: recorded until {kept_until:.2f} s, the fault came at {fault:.2f} s"
 
 
 def check_period(snapshots: Iterable[Snapshot], except_for: Callable[[float], bool]) -> None:

@@ -146,6 +146,9 @@ _PROMISES = (
         "coil_hot", "which coil is too hot, and how long it must rest", HELD, "heat", 2 * FRAME, 3 * FRAME,
         {"heat_percent": 105.0},
     ),
+    Promise("disk_full", "the run has ended since its recording has failed", DISARMED, "recording", 1000, 1001),
+    Promise("disk_read_only", "the run has ended since its recording has failed", DISARMED, "recording", 1000, 1001),
+    Promise("disk_slow", "how much of the run waits to be written, nothing else", RUNNING),
 )  # fmt: skip
 
 PROMISES = {promise.name: promise for promise in _PROMISES}

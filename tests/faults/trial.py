@@ -10,6 +10,7 @@ from tests.faults.invariants import (
     check_announced,
     check_limits,
     check_period,
+    check_recording,
     check_stays_zero,
     check_zero,
     nothing_left_behind,
@@ -36,6 +37,7 @@ def try_out(promise: Promise) -> Trial:
         check_invariants(bench, promise, reaction, mended)
         bench.go_on(promise.tries)
         check_limits(bench.trace.samples, bench.electrics, promise.overshoot)
+        check_recording(bench.recording_at_the_end(), reaction.fault * 1e-3)
         return Trial(promise, reaction, _largest(bench))
 
 

@@ -7,6 +7,7 @@ import httpx
 import numpy as np
 
 from server.app import create_app
+from server.archive import Archive
 from server.assembly import build_machine
 from server.optics import assumed_model
 from server.rig import Rig
@@ -48,10 +49,11 @@ class Wizard:
 @contextlib.asynccontextmanager
 async def wizard(serve, path, as_run=lambda settings: settings):
     store = RigStore(path)
-    rig = Rig(build_machine(as_run(store.settings), realtime=True))
+    archive = Archive.open(path.parent)
+    rig = Rig(build_machine(as_run(store.settings), realtime=True), recorder=archive.recorder)
     changes = RigChanges(rig, store, as_run)
     async with (
-        serve(create_app(rig, changes=changes)) as at,
+        serve(create_app(rig, archive, changes=changes)) as at,
         httpx.AsyncClient(base_url=at.url + "/api/v1", timeout=PATIENCE) as api,
     ):
         yield Wizard(rig, path, api)

@@ -11,6 +11,7 @@ from fastapi import FastAPI
 from websockets.asyncio.client import connect
 
 from server.app import create_app, end_streams
+from server.archive import Archive
 from server.assembly import build_machine
 from server.rig import Rig
 from server.settings import RigFile
@@ -25,6 +26,7 @@ class Served:
     """Where an application is served. server: to be told to end."""
 
     rig: Rig
+    archive: Archive
 
     def __init__(self, server):
         self.server = server
@@ -78,11 +80,12 @@ def serve():
 
 
 @pytest.fixture(scope="module")
-async def at():
-    """The whole server with the paper's rig, simulated in real time. rig: what stands behind it."""
-    rig = Rig(build_machine(RigFile(), realtime=True))
-    async with served(create_app(rig)) as served_rig:
-        served_rig.rig = rig
+async def at(tmp_path_factory):
+    """The whole server with the paper's rig, simulated in real time. rig, archive: what stands behind it."""
+    archive = Archive.open(tmp_path_factory.mktemp("data"))
+    rig = Rig(build_machine(RigFile(), realtime=True), recorder=archive.recorder)
+    async with served(create_app(rig, archive)) as served_rig:
+        served_rig.rig, served_rig.archive = rig, archive
         yield served_rig
 
 

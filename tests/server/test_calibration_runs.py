@@ -8,6 +8,7 @@ import httpx
 import pytest
 
 from server.app import create_app
+from server.archive import Archive
 from server.assembly import build_machine
 from server.rig import Rig
 from server.rig_changes import RigChanges
@@ -61,10 +62,11 @@ async def served_rig(serve, path: Path, as_run=lambda settings: settings):
     def build(settings: RigFile):
         return build_machine(settings, realtime=False)
 
-    rig = Rig(build(as_run(store.settings)), build)
+    archive = Archive.open(path.parent)
+    rig = Rig(build(as_run(store.settings)), build, archive.recorder)
     changes = RigChanges(rig, store, as_run)
     async with (
-        serve(create_app(rig, changes=changes)) as at,
+        serve(create_app(rig, archive, changes=changes)) as at,
         httpx.AsyncClient(base_url=at.url + "/api/v1", timeout=PATIENCE) as api,
     ):
         yield Bench(rig, path, api)
@@ -242,9 +244,10 @@ async def test_whatever_ends_the_walk_ends_the_calibration_with_its_reason(bench
     assert bench.path.read_text() == RIG
 
 
-async def test_a_server_that_ends_takes_a_calibration_with_it(serve):
-    rig = Rig(build_machine(RigFile(), realtime=False))
-    app = create_app(rig)
+async def test_a_server_that_ends_takes_a_calibration_with_it(serve, tmp_path):
+    archive = Archive.open(tmp_path)
+    rig = Rig(build_machine(RigFile(), realtime=False), recorder=archive.recorder)
+    app = create_app(rig, archive)
     async with serve(app) as at, httpx.AsyncClient(base_url=at.url + "/api/v1", timeout=PATIENCE) as api:
         bench = Bench(rig, Path(), api)
         await bench.armed()

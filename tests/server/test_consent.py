@@ -8,6 +8,7 @@ from typer.testing import CliRunner
 
 from control.coil_heat import ASSUMED_AT_START
 from server.app import create_app
+from server.archive import Archive
 from server.assembly import build_machine
 from server.cli import app
 from server.rig import Rig
@@ -26,8 +27,9 @@ def client(at) -> httpx.AsyncClient:
 async def real(serve, tmp_path_factory: pytest.TempPathFactory):
     """An HTTP client of a real rig."""
     with real_rig(tmp_path_factory.mktemp("bench")) as path:
-        rig = Rig(build_machine(load_rig_file(path), realtime=True))
-        async with serve(create_app(rig)) as at, client(at) as api:
+        archive = Archive.open(tmp_path_factory.mktemp("data"))
+        rig = Rig(build_machine(load_rig_file(path), realtime=True), recorder=archive.recorder)
+        async with serve(create_app(rig, archive)) as at, client(at) as api:
             yield api
 
 
@@ -61,10 +63,11 @@ async def test_a_real_rig_counts_its_coils_as_warm_after_a_start_and_says_so(rea
     assert lines == ["what the coils carried before this start is not known: they count as 80% hot"]
 
 
-async def test_a_simulated_rig_arms_without_being_asked_and_starts_cold(serve):
-    rig = Rig(build_machine(RigFile(), realtime=True))
+async def test_a_simulated_rig_arms_without_being_asked_and_starts_cold(serve, tmp_path):
+    archive = Archive.open(tmp_path)
+    rig = Rig(build_machine(RigFile(), realtime=True), recorder=archive.recorder)
     async with (
-        serve(create_app(rig)) as at,
+        serve(create_app(rig, archive)) as at,
         httpx.AsyncClient(base_url=at.url + "/api/v1", timeout=10.0) as api,
     ):
         answer = await api.post("/arm")

@@ -8,6 +8,7 @@ import pytest
 from websockets.exceptions import ConnectionClosed
 
 from server.app import create_app
+from server.archive import Archive
 from server.assembly import build_machine
 from server.rig import Rig
 from server.settings import RigFile
@@ -51,7 +52,7 @@ async def test_all_viewers_share_one_text_of_a_tick(at):
     text = at.rig.updates
     async with text.subscribe() as mailbox:
         snapshot = await mailbox.get()
-    cache = create_app(at.rig).state.tick_text
+    cache = create_app(at.rig, at.archive).state.tick_text
     assert cache.of(snapshot) is cache.of(snapshot)
 
 
@@ -115,7 +116,7 @@ async def test_each_view_is_a_picture_of_its_own(at, api, view):
 
 
 async def test_any_number_of_viewers_costs_one_encoding_of_a_frame(at):
-    pictures = create_app(at.rig).state.pictures
+    pictures = create_app(at.rig, at.archive).state.pictures
     frame = at.rig.frame
     made = await asyncio.gather(*(pictures.encoded(frame, "raw") for _ in range(10)))
     assert all(picture is made[0] for picture in made)
@@ -161,10 +162,11 @@ async def whole_stream(at):
         return (await client.get(f"{at.url}/api/v1/camera/stream.mjpg", timeout=10.0)).content
 
 
-async def test_the_end_comes_soon_with_every_kind_of_viewer_and_leaves_no_task_or_port(serve):
+async def test_the_end_comes_soon_with_every_kind_of_viewer_and_leaves_no_task_or_port(serve, tmp_path):
     tasks = asyncio.all_tasks()
-    rig = Rig(build_machine(RigFile(), realtime=True))
-    async with serve(create_app(rig)) as at:
+    archive = Archive.open(tmp_path)
+    rig = Rig(build_machine(RigFile(), realtime=True), recorder=archive.recorder)
+    async with serve(create_app(rig, archive)) as at:
         telemetry, camera = await at.socket("/api/v1/telemetry"), await at.socket("/api/v1/camera")
         await telemetry.recv()
         await camera.recv()

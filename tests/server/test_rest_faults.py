@@ -123,10 +123,10 @@ async def test_a_fault_that_there_is_not_cannot_be_taken_away(api):
     assert (await api.delete(f"{FAULTS}/gremlins")).status_code == 404
 
 
-async def test_a_real_rig_has_no_faults_to_inject():
+async def test_a_real_rig_has_no_faults_to_inject(at):
     machine = build_machine(RigFile(), realtime=False)
     machine.faults = None
-    app = create_app(Rig(machine))
+    app = create_app(Rig(machine), at.archive)
     transport = httpx.ASGITransport(app)
     async with httpx.AsyncClient(transport=transport, base_url="http://localhost/api/v1") as client:
         for method, path in (("GET", ""), ("POST", ""), ("DELETE", ""), ("DELETE", "/supply_off")):

@@ -11,7 +11,7 @@ STATE = {
     "rig", "reason", "faults", "simulated", "tick", "time_s", "captured_s", "pose", "pose_sigma",
     "measurement", "window_px", "tracking", "tracking_age_s", "command", "reference", "error_mm",
     "currents_A", "measured_currents_A", "field_mT", "saturated", "limited_by", "coil_heat", "refused",
-    "body_tilt_deg", "run", "loop", "link", "operator",
+    "body_tilt_deg", "run", "loop", "link", "recording", "operator",
     "camera", "tracking_reason", "rivals_px",
 }  # fmt: skip
 

@@ -119,7 +119,9 @@ async def test_a_bad_change_is_refused_and_the_walk_goes_on_as_it_was(running, b
     before = (await running.get("/runs/current")).json()
     answer = await running.patch("/runs/current", json=body)
     assert answer.status_code == 422
-    assert (await running.get("/runs/current")).json() == before
+    now = (await running.get("/runs/current")).json()
+    for part in ("state", "controller", "trajectory", "gait"):
+        assert now[part] == before[part]
     await until(running, rig="running")
 
 
@@ -140,7 +142,8 @@ async def test_a_stopped_run_leaves_the_rig_armed_and_its_metrics_in_the_list(ru
         "mean_error_mm", "normalized_mean_error", "rms_error_mm", "max_error_mm", "steps", "travelled_mm",
         "end_error_mm", "duration_s", "ticks", "sweeps", "reversals",
     }  # fmt: skip
-    assert (await running.get(f"/runs/{run['id']}")).json() == run
+    one = (await running.get(f"/runs/{run['id']}")).json()
+    assert (one["metrics"], one["settings"]["run"]["id"]) == (run["metrics"], run["id"])
 
 
 async def test_disarming_ends_the_run(running):

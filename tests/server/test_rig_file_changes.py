@@ -17,6 +17,7 @@ from rig_file_bench import PATIENCE, RigFileBench
 
 from control.coil_heat import CoilHeat
 from server.app import create_app
+from server.archive import Archive
 from server.assembly import Machine, build_machine
 from server.atomic_save import previous_of
 from server.rig import Rig
@@ -41,9 +42,10 @@ class Bench(RigFileBench):
 @contextlib.asynccontextmanager
 async def bench(serve, path: Path, build=None):
     store = RigStore(path)
-    rig = Rig(build_machine(store.settings, realtime=True), build)
+    archive = Archive.open(path.parent)
+    rig = Rig(build_machine(store.settings, realtime=True), build, archive.recorder)
     changes = RigChanges(rig, store, lambda settings: settings)
-    async with serve(create_app(rig, changes=changes)) as at:
+    async with serve(create_app(rig, archive, changes=changes)) as at:
         one = Bench(at, rig, path)
         async with one.api:
             yield one

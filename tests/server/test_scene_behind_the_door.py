@@ -15,10 +15,13 @@ from websockets.exceptions import InvalidStatus
 from control.model import Pose
 from server import scene as scene_module
 from server.app import create_app
+from server.archive import Archive
 from server.assembly import build_machine
 from server.rig import Rig
+from server.scene import View
 from server.scene_bridge import CameraPose, admitted
 from server.scene_page import HIDDEN, PAGE, page
+from server.scene_robot import ShownRobot
 from server.settings import RigFile
 
 pytestmark = pytest.mark.anyio
@@ -179,23 +182,26 @@ async def test_a_page_from_elsewhere_cannot_look(at):
 
 
 async def test_the_scenes_arrows_and_robot_follow_the_snapshot(at):
-    scene, snapshot = feed_of(at).scene, at.rig.snapshot
-    walking = replace(snapshot, pose=Pose(0.01, 0.02, 0.5), currents=(2.0, -1.0, 0.5), body_tilt=0.1)
-    path = np.array([[0.0, 0.0], [0.01, 0.0]])
-    await asyncio.to_thread(scene.show, walking, path, path[:0])
-    points, _ = scene._arrows.for_currents(walking.currents)
+    scene = feed_of(at).scene
+    path, currents = np.array([[0.0, 0.0], [0.01, 0.0]]), (2.0, -1.0, 0.5)
+    walking = ShownRobot(Pose(0.01, 0.02, 0.5), 1, 0.1, path, path[:0])
+    await asyncio.to_thread(scene.show, View(scene._geometry, currents, [walking]))
+    points, _ = scene._arrows.for_currents(currents)
     assert scene._field.visible
     assert scene._field.points == pytest.approx(points * 100, abs=1e-4)
-    assert scene._robot.position[:2] == pytest.approx([1.0, 2.0], abs=0.1)
-    assert (scene._lines["path"].visible, scene._lines["trail"].visible) == (True, False)
-    lost = replace(snapshot, pose=None, currents=(0.0, 0.0, 0.0))
-    await asyncio.to_thread(scene.show, lost, path, path)
+    [robot] = scene.robots
+    assert robot.body.position[:2] == pytest.approx([1.0, 2.0], abs=0.1)
+    assert (robot.lines["path"].visible, robot.lines["trail"].visible) == (True, False)
+    lost = replace(walking, pose=None, trail=path)
+    await asyncio.to_thread(scene.show, View(scene._geometry, (0.0, 0.0, 0.0), [lost]))
     assert not scene._field.visible
-    assert not scene._robot.visible
+    assert not robot.body.visible
 
 
-async def test_a_scene_that_ends_closes_the_sockets_of_its_viewers(serve):
-    async with serve(create_app(Rig(build_machine(RigFile(), realtime=True)))) as at, viewer_of(at) as viewer:
+async def test_a_scene_that_ends_closes_the_sockets_of_its_viewers(serve, tmp_path):
+    archive = Archive.open(tmp_path)
+    rig = Rig(build_machine(RigFile(), realtime=True), recorder=archive.recorder)
+    async with serve(create_app(rig, archive)) as at, viewer_of(at) as viewer:
         await viewer.recv()
         feed = feed_of(at)
         await asyncio.get_running_loop().run_in_executor(None, feed.scene.stop)

@@ -9,6 +9,7 @@ import httpx
 from rig_file_bench import RigFileBench
 
 from server.app import create_app
+from server.archive import Archive
 from server.assembly import build_machine
 from server.rig import Rig
 from server.rig_changes import RigChanges
@@ -47,9 +48,10 @@ class VisionBench(RigFileBench):
 
 @contextlib.asynccontextmanager
 async def bench(serve, store: RigStore):
-    rig = Rig(build_machine(store.settings, realtime=True))
+    archive = Archive.open(store.path.parent)
+    rig = Rig(build_machine(store.settings, realtime=True), recorder=archive.recorder)
     changes = RigChanges(rig, store, lambda settings: settings)
-    async with serve(create_app(rig, changes=changes)) as at:
+    async with serve(create_app(rig, archive, changes=changes)) as at:
         one = VisionBench(at, rig, store.path)
         async with one.api:
             yield one

@@ -2,6 +2,7 @@
 import { trackingWords } from "../camera/tracking.js";
 import { KeySheet } from "../keys/keys.js";
 import { stopNow } from "../live/actions.js";
+import { RecordingSign } from "../runs/sign.js";
 import { useStore } from "../store.js";
 import { quantity } from "../units.js";
 import { html, useEffect, useRef } from "../view.js";
@@ -23,6 +24,7 @@ export function Bar() {
         ${(tick?.simulated ?? rig?.simulated) && html`<span class="badge" title="No coil is real: camera, robot and board are simulated">SIM</span>`}
       </div>
       <${State} tick=${tick} />
+      <${RecordingSign} recording=${tick?.recording} />
       <${Vitals} tick=${tick} />
       <${KeySheet} />
       <button class="stop" type="button" onClick=${stopNow} aria-keyshortcuts="Escape Space" title="Coils to zero, at once (Escape or Space)">STOP</button>

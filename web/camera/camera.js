@@ -7,6 +7,7 @@ import { fixed, quantity, wrapDegrees } from "../units.js";
 import { html, useEffect, useRef, useState } from "../view.js";
 import { createPainter } from "./painter.js";
 import { PointedCanvas, usePointer, useTaker } from "./pointing.js";
+import { rigPictures } from "./rig_pictures.js";
 import { frameAge, mayBeTold, STALE_S, trackingReason, trackingWords } from "./tracking.js";
 
 const VIEWS = [["raw", "Picture"], ["mask", "Mask"]];
@@ -29,7 +30,7 @@ export function Camera() {
         <label class="switch"><input type="checkbox" checked=${overlay} onChange=${(event) => setOverlay(event.target.checked)} />Overlay</label>
       </header>
       <${Picture} view=${view} overlay=${overlay} />
-      <${Readings} />
+      <${RigReadings} />
     </section>
   `;
 }
@@ -40,7 +41,7 @@ function Picture({ view, overlay }) {
   const canvas = useRef(null);
   const painter = useRef(null);
   useEffect(() => {
-    painter.current = createPainter(canvas.current);
+    painter.current = createPainter(canvas.current, rigPictures);
     return () => painter.current.close();
   }, []);
   useEffect(() => painter.current.show({ view, overlay }), [view, overlay]);
@@ -81,13 +82,17 @@ function Age({ age }) {
   return html`<p class="picture-note stale">no frame for ${fixed(seconds, 1)} s</p>`;
 }
 
-function Readings() {
-  const tick = useStore((state) => state.tick);
+function RigReadings() {
+  return html`<${Readings} tick=${useStore((state) => state.tick)} />`;
+}
+
+/** What a tick says of the robot, in words and numbers; waiting: what is said while there is none. */
+export function Readings({ tick, waiting = trackingWords(null) }) {
   const pose = tick?.pose;
   const active = tick?.command?.field_mT > 0 ? (tick.command.pivot === 1 ? "A" : "B") : "none";
   return html`
     <dl class="readings">
-      <div class="tracking" data-tracking=${tick?.tracking} title=${trackingReason(tick)}><dt>Tracking</dt><dd>${trackingWords(tick)}</dd></div>
+      <div class="tracking" data-tracking=${tick?.tracking} title=${trackingReason(tick)}><dt>Tracking</dt><dd>${tick ? trackingWords(tick) : waiting}</dd></div>
       <div><dt>x</dt><dd>${quantity(pose?.x_mm, "mm")}</dd></div>
       <div><dt>y</dt><dd>${quantity(pose?.y_mm, "mm")}</dd></div>
       <div><dt>Heading</dt><dd>${quantity(pose ? wrapDegrees(pose.heading_deg) : null, "deg")}</dd></div>

@@ -1,28 +1,26 @@
 /** Paints picture and overlay into one canvas, at the screen's own resolution, when either has changed. */
-import { get } from "../store.js";
-import { live, onTick } from "../live/ticks.js";
-import { keepOpen } from "../live/socket.js";
 import { drawOverlay } from "./overlay.js";
-import { ALONE, drawnLayers, onPointingChange } from "./pointing.js";
+import { ALONE } from "./pointing.js";
 import { projection } from "./projection.js";
 
-/** Pictures are asked for at most this often: more cannot be told apart and costs the rig's computer, ms. */
-const PICTURE_MS = 33;
 /** The overlay moves with the pictures; without any for this long it moves by itself, s. */
 const ALONE_S = 0.1;
 
 /**
  * @param {HTMLCanvasElement} canvas
+ * @param source where pictures come from and what is drawn over them (the rig's: camera/rig_pictures.js):
+ *        camera() -> {size, model} or null; open(view, show) -> {close}, with show(image data or null, then, about) for
+ *        each picture and then() called once it is on the screen; onChange(listener) and onLayers(listener) -> forget;
+ *        layers() to draw under the overlay; over(about) -> {path, trail, tick, length_mm}, about: of the picture shown
  * @returns painter with `show({view, overlay})`, `age_s()` of the newest picture, where in the picture an event is
  *          (`place(event)`), the picture's `size` and its `pixel` (a CSS pixel in camera pixels), and `close()`
  */
-export function createPainter(canvas) {
+export function createPainter(canvas, source) {
   const context = canvas.getContext("2d");
-  const painter = { picture: null, overlay: true, model: null, project: null, receivedAt: null };
+  const painter = { source, picture: null, about: undefined, overlay: true, model: null, project: null, receivedAt: null };
   let requested = 0;
   let frames = null;
-  let asked = 0;
-  let askForNext = null;
+  let tellShown = null;
 
   function invalidate() {
     requested ||= requestAnimationFrame(paint);
@@ -33,23 +31,19 @@ export function createPainter(canvas) {
     fit(canvas);
     const size = sizeOf(painter);
     if (size) paintScaled(context, painter, size);
-    askForNext?.();
-    askForNext = null;
+    tellShown?.();
+    tellShown = null;
   }
 
-  async function receive(data, send) {
-    const picture = await createImageBitmap(data).catch(() => null);
-    if (picture) {
+  async function receive(data, shown, about) {
+    const picture = data && (await createImageBitmap(data).catch(() => null));
+    if (picture || data === null) {
       painter.picture?.close();
       painter.picture = picture;
+      painter.about = about;
       painter.receivedAt = performance.now();
     }
-    // The next picture is asked for once this one is on the screen: a hidden page asks for none.
-    const rest = PICTURE_MS - (performance.now() - asked);
-    askForNext = () => setTimeout(() => {
-      asked = performance.now();
-      send("ok");
-    }, rest);
+    tellShown = shown;
     invalidate();
   }
 
@@ -57,7 +51,7 @@ export function createPainter(canvas) {
     painter.overlay = overlay;
     if (painter.view !== view) {
       frames?.close();
-      frames = keepOpen(`/api/v1/camera?view=${view}`, { message: receive });
+      frames = source.open(view, receive);
       painter.view = view;
     }
     invalidate();
@@ -65,13 +59,13 @@ export function createPainter(canvas) {
 
   const resized = new ResizeObserver(invalidate);
   resized.observe(canvas);
-  const forgetTicks = onTick(() => (pictureAge(painter) ?? 1) > ALONE_S && invalidate());
-  const forgetPointing = onPointingChange(invalidate);
+  const forgetChanges = source.onChange(() => (pictureAge(painter) ?? 1) > ALONE_S && invalidate());
+  const forgetLayers = source.onLayers(invalidate);
   const close = () => {
     cancelAnimationFrame(requested);
     resized.disconnect();
-    forgetTicks();
-    forgetPointing();
+    forgetChanges();
+    forgetLayers();
     frames?.close();
   };
   return {
@@ -87,8 +81,8 @@ export function createPainter(canvas) {
   };
 }
 
-function sizeOf({ picture }) {
-  return get().camera?.size ?? (picture ? [picture.width, picture.height] : null);
+function sizeOf({ source, picture }) {
+  return source.camera()?.size ?? (picture ? [picture.width, picture.height] : null);
 }
 
 /** How a picture of a size lies within a box: as large as it goes, in the middle. */
@@ -130,29 +124,20 @@ function paintScaled(context, painter, [width, height]) {
   if (painter.picture) context.drawImage(painter.picture, 0, 0, width, height);
   followModel(painter);
   const pen = { context, pixel, picture: painter.picture, size: [width, height], project: painter.project };
-  const alone = [...drawnLayers()].map((draw) => draw(pen)).includes(ALONE);
+  const alone = [...painter.source.layers()].map((draw) => draw(pen)).includes(ALONE);
   if (painter.overlay && !alone) paintOverlay(context, painter, pixel);
 }
 
 function followModel(painter) {
-  const model = get().camera?.model;
+  const model = painter.source.camera()?.model;
   if (!model || painter.model === model) return;
   painter.model = model;
   painter.project = projection(model);
 }
 
 function paintOverlay(context, painter, pixel) {
-  const { camera, path, runPath, rig, setup } = get();
+  const { source, about, project } = painter;
+  const camera = source.camera();
   if (!camera?.model) return;
-  // While the camera is set up the picture shows what the camera sees, not what a run would do.
-  const way = setup === null ? (runPath ?? path)?.points_mm : null;
-  drawOverlay(context, pixel, {
-    project: painter.project,
-    bodyHeight_mm: camera.model.body_height_mm ?? 0,
-    length_mm: rig?.robot?.length_mm,
-    path: way,
-    tick: live.tick,
-    trail: setup === null ? live.trail : [],
-    size: camera.size,
-  });
+  drawOverlay(context, pixel, { ...source.over(about), project, size: camera.size, bodyHeight_mm: camera.model.body_height_mm ?? 0 });
 }

@@ -1,12 +1,8 @@
-/** One uPlot chart fed from the history of ticks; colours follow the page's tokens, light or dark. */
+/** One uPlot chart over time; colours follow the page's tokens, light or dark. */
 import uPlot from "/static/vendor/uplot/uPlot.esm.js";
-import { live, onTick, WINDOW_S } from "../live/ticks.js";
 import { fixed } from "../units.js";
 
 const SYNC = uPlot.sync("dashboard");
-/** A chart is drawn at most this often: faster cannot be followed, ms. */
-const REDRAW_MS = 100;
-const LEGEND_MS = 200;
 /** The least that an axis spans, so that noise at rest does not fill the chart. */
 const LEAST_SPAN = { mm: 4, deg: 20, A: 2 };
 const PAD = 0.08;
@@ -14,51 +10,44 @@ const PAD = 0.08;
 /**
  * @param {HTMLElement} box
  * @param curves [{column, unit, colour, style, fromZero}]
- * @param {(values: object, blank: boolean) => void} onValues values by column, under the cursor or newest;
+ * @param source whose values (the rig's: charts/last_minute.js): columns(curves) -> [times, values…]; range of the
+ *        time axis, as uPlot asks for it; valuesAt(columns, cursor's index or null) for the legend; onChange(listener)
+ *        of the values and onTime(listener) of the time -> forget; timeAxis {splits?, values};
+ *        attach?(plot) -> detach, for what it draws and hears itself
+ * @param {(values: Array, blank: boolean) => void} onValues one a curve, under the cursor or at the source's time;
  *        blank: there is nothing to draw at all
  * @returns {() => void} takes the chart away
  */
-export function createChart(box, curves, onValues) {
-  let plot = build(box, curves);
-  let drawn = 0;
-  let told = 0;
-  const stopTicks = onTick(() => {
-    const now = performance.now();
-    if (now - drawn < REDRAW_MS || document.hidden) return;
-    drawn = now;
-    plot.setData(columns(curves));
-    if (now - told < LEGEND_MS) return;
-    told = now;
-    onValues(valuesAt(plot.cursor.idx, curves), isBlank(curves));
-  });
+export function createChart(box, curves, source, onValues) {
+  let [plot, detach] = build(box, curves, source);
+  const tell = () => onValues(source.valuesAt(plot.data, plot.cursor.idx ?? null), isBlank(plot.data.slice(1)));
+  const forget = [source.onChange(() => plot.setData(source.columns(curves))), source.onTime(tell)];
+  tell();
   const resized = new ResizeObserver(() => plot.setSize(sizeOf(box)));
   resized.observe(box);
   const theme = matchMedia("(prefers-color-scheme: dark)");
-  const repaint = () => {
+  const away = () => {
+    detach();
     plot.destroy();
-    plot = build(box, curves);
+  };
+  const repaint = () => {
+    away();
+    [plot, detach] = build(box, curves, source);
   };
   theme.addEventListener("change", repaint);
   return () => {
-    stopTicks();
+    for (const stop of forget) stop();
     resized.disconnect();
     theme.removeEventListener("change", repaint);
-    plot.destroy();
+    away();
   };
 }
 
-const columns = (curves) => [live.history.time_s, ...curves.map(({ column }) => live.history[column])];
-
-function valuesAt(index, curves) {
-  const at = index ?? live.history.time_s.length - 1;
-  return Object.fromEntries(curves.map(({ column }) => [column, live.history[column][at]]));
-}
-
-const isBlank = (curves) => curves.every(({ column }) => live.history[column].every((value) => value === null));
+const isBlank = (columns) => columns.every((column) => column.every((value) => value === null || value === undefined));
 
 const sizeOf = (box) => ({ width: Math.max(120, box.clientWidth), height: Math.max(80, box.clientHeight) });
 
-function build(box, curves) {
+function build(box, curves, source) {
   const style = getComputedStyle(document.documentElement);
   const token = (name) => style.getPropertyValue(name).trim();
   const units = [...new Set(curves.map(({ unit }) => unit))];
@@ -67,11 +56,12 @@ function build(box, curves) {
     legend: { show: false },
     padding: [8, units.length > 1 ? 0 : 20, 0, 0],
     cursor: { sync: { key: SYNC.key, setSeries: false }, drag: { x: false, y: false }, points: { size: 5 }, y: false },
-    scales: { x: { time: false, range: (_, __, newest) => [newest - WINDOW_S, newest] }, ...scalesOf(units, curves.every((curve) => curve.fromZero)) },
-    axes: [timeAxis(token), ...units.map((unit, index) => axis(unit, index, token))],
+    scales: { x: { time: false, range: source.range }, ...scalesOf(units, curves.every((curve) => curve.fromZero)) },
+    axes: [{ ...look(token), size: 26, ...source.timeAxis }, ...units.map((unit, index) => axis(unit, index, token))],
     series: [{}, ...curves.map((curve) => series(curve, token))],
   };
-  return new uPlot(options, columns(curves), box);
+  const plot = new uPlot(options, source.columns(curves), box);
+  return [plot, source.attach?.(plot) ?? (() => {})];
 }
 
 const scalesOf = (units, fromZero) =>
@@ -99,16 +89,6 @@ function everyOther(plot, seriesIndex, show) {
   if (!show) return null;
   const step = Math.max(1, Math.ceil((plot.data[0].length * 4) / plot.bbox.width));
   return plot.data[seriesIndex].map((_, index) => index).filter((index) => index % step === 0);
-}
-
-function timeAxis(token) {
-  const ago = [60, 45, 30, 15, 0];
-  return {
-    ...look(token),
-    size: 26,
-    splits: (plot) => ago.map((seconds) => plot.scales.x.max - seconds),
-    values: () => ago.map((seconds) => (seconds === 0 ? "now" : `−${seconds} s`)),
-  };
 }
 
 function axis(unit, index, token) {

@@ -1,13 +1,14 @@
-/** Three live charts over the last minute with one cursor. */
+/** Three charts with one cursor: of the last minute of the rig, or of whatever else a source tells. */
 import { html, useEffect, useRef, useState } from "../view.js";
 import { quantity } from "../units.js";
 import { createChart } from "./chart.js";
+import { lastMinute } from "./last_minute.js";
 
 const DIGITS = { mm: 1, deg: 0, A: 2 };
 const COILS = [["x", "first"], ["y", "second"], ["z", "third"]];
 
-/** curves: column of the history, label, unit, colour token, style; only labelled ones are in the legend. */
-const CHARTS = [
+/** curves: column, label, unit, colour token, style; only those with a label, be it empty, are in the legend. */
+export const CHARTS = [
   {
     title: "Error", note: "distance from the centre to the target", empty: "Shown once a run is on.",
     curves: [{ column: "error_mm", label: "error", unit: "mm", colour: "first", fromZero: true }],
@@ -41,24 +42,25 @@ function tripled(name, label, unit, colour) {
 
 export function Charts() {
   return html`<section class="charts" aria-label="Charts of the last minute">
-    ${CHARTS.map((chart) => html`<${Chart} key=${chart.title} ...${chart} />`)}
+    ${CHARTS.map((chart) => html`<${Chart} key=${chart.title} ...${chart} source=${lastMinute} span="over the last 60 seconds" />`)}
   </section>`;
 }
 
-function Chart({ title, note, curves, empty }) {
+/** span: "over the last 60 seconds", in the chart's name for a screen reader. */
+export function Chart({ title, note, curves, empty, source, span }) {
   const box = useRef(null);
-  const [{ values, blank }, show] = useState({ values: {}, blank: true });
-  useEffect(() => createChart(box.current, curves, (newest, nothing) => show({ values: newest, blank: nothing })), []);
+  const [{ values, blank }, show] = useState({ values: [], blank: true });
+  useEffect(() => createChart(box.current, curves, source, (newest, nothing) => show({ values: newest, blank: nothing })), [curves, source]);
   return html`
     <section class="card chart" aria-label=${title}>
       <header class="card-head">
         <h2>${title}</h2>
-        ${curves.filter(({ label }) => label).map(({ column, label, unit, colour }) => html`
-          <span class="legend" data-colour=${colour}>${label}<b>${quantity(values[column], unit, DIGITS[unit])}</b></span>
+        ${curves.map(({ label, unit, colour, style }, index) => label !== undefined && html`
+          <span class="legend" data-colour=${colour} data-style=${style ?? "line"}>${label}<b>${quantity(values[index], unit, DIGITS[unit])}</b></span>
         `)}
         ${note && html`<span class="hint">${note}</span>`}
       </header>
-      <div class="plot" ref=${box} role="img" aria-label=${`${title} over the last 60 seconds`}></div>
+      <div class="plot" ref=${box} role="img" aria-label=${`${title} ${span}`}></div>
       ${empty && blank && html`<p class="plot-note">${empty}</p>`}
     </section>
   `;

@@ -1,8 +1,8 @@
-/** Below the live part: this session's runs and the log. */
+/** Below the live part: the runs and the log. */
+import { Runs } from "../runs/runs.js";
 import { useStore } from "../store.js";
 import { html, useRef, useState } from "../view.js";
 import { Log } from "./log.js";
-import { Runs } from "./runs.js";
 
 const TABS = [["runs", "Runs", Runs], ["log", "Log", Log]];
 
@@ -26,7 +26,7 @@ export function Journal() {
             tabindex=${name === open ? 0 : -1} onClick=${() => setOpen(name)}>${title}${name === "log" && faults > 0 ? ` (${faults} open)` : ""}</button>
         `)}
       </div>
-      <div class="tab-page" role="tabpanel" id="tab-page" aria-labelledby=${`tab-${open}`} tabindex="0"><${Page} /></div>
+      <div class="tab-page" data-tab=${open} role="tabpanel" id="tab-page" aria-labelledby=${`tab-${open}`} tabindex=${open === "log" ? 0 : -1}><${Page} /></div>
     </section>
   `;
 }

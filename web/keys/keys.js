@@ -8,11 +8,13 @@ const KEYS = [
   ["?", "this sheet"],
   ["Tab, Shift + Tab", "next, previous control"],
   ["Enter", "press the focused button, take over the focused value"],
+  ["K", "play or pause a recording that is shown (J, L: 5 s back, on; , and .: one picture)"],
+  ["[ ] \\", "begin, end, leave the part of it that is played again and again"],
   ["Arrows", "move the crosshair in the camera picture while it waits for a click (Shift: far; Enter: click)"],
 ];
 
 const TEXT_INPUTS = "textarea, [contenteditable=true], input:not([type=checkbox]):not([type=radio]):not([type=button]):not([type=range])";
-const isTyping = (event) => event.target instanceof event.view.Element && event.target.matches(TEXT_INPUTS);
+export const isTyping = (event) => event.target instanceof event.view.Element && event.target.matches(TEXT_INPUTS);
 const isStop = (event) => event.key === "Escape" || (event.key === " " && !isTyping(event));
 
 function onKeyDown(event) {

@@ -1,4 +1,6 @@
 /** Keeps the telemetry stream open, feeds ticks and store from it, and loads what the page is made from. */
+import { reloadIfInspected } from "../runs/inspected.js";
+import { hearOfRun, loadRuns } from "../runs/listing.js";
 import { get, say, set } from "../store.js";
 import { hasUnsentEdits, showRunPath } from "./actions.js";
 import { read } from "./rest.js";
@@ -43,22 +45,18 @@ function watch(socket) {
 }
 
 async function load() {
-  const [rig, camera, controllers, trajectories, gaitSchema, selection, runs] = await Promise.all(
-    ["/rig", "/camera", "/controllers", "/trajectories", "/gait", "/selection", "/runs"].map(read),
+  loadRuns();
+  const [rig, camera, controllers, trajectories, gaitSchema, selection, newest] = await Promise.all(
+    ["/rig", "/camera", "/controllers", "/trajectories", "/gait", "/selection", "/runs?limit=1"].map(read),
   );
   set({ rig, camera, controllers, trajectories, gaitSchema, selection });
-  setRuns(runs.runs);
+  showRunPath(newest.runs.find(({ state }) => state === "running")?.trajectory);
 }
 
 /** The rig's values, its file and its camera, which change when somebody changes the rig file. */
 async function loadRig() {
   const [rig, camera] = await Promise.all(["/rig", "/camera"].map(read));
   set({ rig, camera });
-}
-
-function setRuns(runs) {
-  set({ runs });
-  showRunPath(runs.find(({ state }) => state === "running")?.trajectory);
 }
 
 function receive(data) {
@@ -75,11 +73,14 @@ const handlers = {
     lastText = now;
     set({ tick });
   },
-  run({ event, run }) {
+  run(message) {
+    const { event, run } = message;
     if (event === "started") clearTrail();
-    const runs = get().runs;
-    const known = runs.some(({ id }) => id === run.id);
-    setRuns(known ? runs.map((other) => (other.id === run.id ? run : other)) : [run, ...runs]);
+    if (event === "started" || event === "changed") showRunPath(run.trajectory);
+    // A run that ends is told by the state that it has ended in; what else happens to runs concerns no path.
+    else if (event === run?.state) showRunPath(null);
+    hearOfRun(message);
+    reloadIfInspected(message);
   },
   event(event) {
     set({ events: [event, ...get().events].slice(0, EVENTS_KEPT) });

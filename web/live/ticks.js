@@ -90,7 +90,7 @@ function row(tick) {
 }
 
 /** The same angle on the turn nearest to `heading`, so that two curves of one angle stay together. */
-function near(angle, heading) {
+export function near(angle, heading) {
   if (typeof angle !== "number") return null;
   return heading === null ? wrapDegrees(angle) : heading + wrapDegrees(angle - heading);
 }

@@ -13,12 +13,12 @@ from dataclasses import dataclass
 from typing import Any
 
 from control.registry import Parameters, UnknownName
-from control.simulation.faults import board, camera, computer, limits, line
+from control.simulation.faults import board, camera, computer, disk, limits, line
 from control.simulation.faults.kind import Family, FaultKind
 from control.simulation.faults.points import FaultPoints
 
 KINDS: dict[str, FaultKind] = {
-    kind.name: kind for room in (camera, line, board, computer, limits) for kind in room.KINDS
+    kind.name: kind for room in (camera, line, board, computer, limits, disk) for kind in room.KINDS
 }
 """The catalogue, by name."""
 

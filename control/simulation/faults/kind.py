@@ -20,6 +20,7 @@ class Family(StrEnum):
     COMPUTER = "computer"
     CONTROLLER = "controller"
     LIMITS = "limits"
+    DISK = "disk"
 
 
 class Nothing(Parameters):

@@ -101,6 +101,14 @@ class Decisions:
     nonsense: Nonsense | None = None
 
 
+class DiskSwitches(Protocol):
+    """What can be wrong with the disk that recordings go to; `control.simulation.disk_faults.DiskFaults` is one."""
+
+    full: bool
+    read_only: bool
+    delay: float
+
+
 @dataclass(frozen=True, slots=True)
 class Nominal:
     """What the electrics go back to. supply: mV.  resistances: mohm."""
@@ -122,3 +130,4 @@ class FaultPoints:
     sighting: Sighting
     reports: Reports
     decisions: Decisions
+    disk: DiskSwitches

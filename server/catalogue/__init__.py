@@ -1,0 +1,1 @@
+"""The list of all runs: what can be searched, counted and edited without opening a recording."""

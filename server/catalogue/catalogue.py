@@ -1,0 +1,210 @@
+"""The catalogue of all runs: one SQLite file in the data folder, for several threads and several programs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from sqlalchemy import delete, func, not_, or_, select, update
+from sqlalchemy.exc import IntegrityError, SQLAlchemyError
+from sqlalchemy.orm import Session
+
+from server.catalogue.database import FOR_WRITING, Access
+from server.catalogue.errors import CatalogueError, NoSuchRun
+from server.catalogue.opening import NAME, Opened, opened
+from server.catalogue.queries import next_cursor, number_older, place_at, places
+from server.catalogue.records import EVERY_RUN, RUNNING, Loose, Page, RunQuery, RunRecord, Totals
+from server.catalogue.rows import assign, record_of, row_of
+from server.catalogue.tables import SHOWN, RunRow, SettingsRow
+from server.catalogue.words import in_words
+
+PAGE = 50
+"""Runs on one page unless asked otherwise."""
+
+
+class Catalogue:
+    """Every method raises `CatalogueError`, in words, where the file does not allow what is asked."""
+
+    def __init__(self, path: Path, opened: Opened) -> None:
+        self.path = path
+        self._engine = opened.engine
+        self._writing = opened.engine.execution_options(**FOR_WRITING)
+        self._access = opened.access
+        self.is_new = opened.is_new
+        """There was none, or a broken one: recordings that are there are not in it yet."""
+        self.put_aside = opened.put_aside
+        """Where a broken one is now."""
+
+    @classmethod
+    def open(cls, data: Path) -> Catalogue:
+        """That of a data folder, made where there is none; one that cannot be written to can still be read."""
+        return cls(data / NAME, opened(data))
+
+    def close(self) -> None:
+        self._engine.dispose()
+
+    # One run -------------------------------------------------------------------------------------
+
+    def add(self, record: RunRecord) -> None:
+        """A new run."""
+        try:
+            with self._changing() as session:
+                _put(session, record)
+        except IntegrityError as error:
+            raise CatalogueError(f"there is a run {record.id!r} already") from error
+
+    def put(self, record: RunRecord) -> None:
+        """The run as it is, whether there was one of that id or not."""
+        with self._changing() as session:
+            session.execute(delete(RunRow).where(RunRow.id == record.id))
+            _put(session, record)
+
+    def update(self, id: str, **changes: Any) -> RunRecord:
+        """Other values for some fields of a run; the run as it is then, without its settings."""
+        with self._changing() as session:
+            row = _row(session, id)
+            assign(row, changes)
+            if "settings" in changes:
+                session.merge(SettingsRow(run_id=id, settings=changes["settings"]))
+            return record_of(row)
+
+    def get(self, id: str) -> RunRecord:
+        """One run with its settings; raises `NoSuchRun`."""
+        with self._reading() as session:
+            row = _row(session, id)
+            settings = session.get(SettingsRow, id)
+            return record_of(row, None if settings is None else settings.settings)
+
+    def delete(self, id: str) -> None:
+        """Take the row away; what is on the disk is `server.catalogue.deleting`'s."""
+        with self._changing() as session:
+            if session.connection().execute(delete(RunRow).where(RunRow.id == id)).rowcount == 0:
+                raise NoSuchRun(id)
+
+    def edit(self, id: str, changes: Mapping[str, Any], keep: Callable[[RunRecord], None]) -> RunRecord:
+        """`update` by a person. keep: called before it counts; when that raises, nothing is changed."""
+        with self._changing() as session:
+            row = _row(session, id)
+            assign(row, changes)
+            record = record_of(row)
+            keep(record)
+            return record
+
+    def hide(self, id: str, allow: Callable[[RunRecord], None]) -> RunRecord:
+        """From now on nobody sees this run; its recording is about to go. allow: raises where that may not be."""
+        with self._changing() as session:
+            row = _row(session, id)
+            record = record_of(row)
+            allow(record)
+            row.deleting = True
+            return record
+
+    def show_again(self, id: str) -> None:
+        """A hidden run whose recording did not go."""
+        with self._changing() as session:
+            session.execute(update(RunRow).where(RunRow.id == id).values(deleting=False))
+
+    def hidden(self) -> list[str]:
+        """Runs whose recordings were about to go when something came between."""
+        with self._reading() as session:
+            return list(session.scalars(select(RunRow.id).where(RunRow.deleting.is_(True))))
+
+    def going_on(self) -> list[str]:
+        """Runs that walk or are being recorded, or did when their program ended."""
+        is_going_on = or_(RunRow.state == RUNNING, RunRow.recording_state == "writing")
+        with self._reading() as session:
+            return list(session.scalars(select(RunRow.id).where(is_going_on, RunRow.deleting.is_(False))))
+
+    # Many runs -----------------------------------------------------------------------------------
+
+    def page(self, query: RunQuery = EVERY_RUN, cursor: str | None = None, limit: int = PAGE) -> Page:
+        """Newest first; raises `BadCursor`."""
+        after = None if cursor is None else place_at(cursor)
+        with self._reading() as session:
+            found = session.execute(places(query, after, limit + 1)).all()
+            total = after.total if after is not None else len(found)
+            if after is None and len(found) > limit:
+                total += session.scalar(number_older(query, *found[-1])) or 0
+            runs = _records(session, [id for _, id in found[:limit]])
+        return Page(tuple(runs), next_cursor(runs, total) if len(found) > limit else None, total)
+
+    def known(self, ids: Collection[str]) -> set[str]:
+        """Those of the ids that are in the catalogue, hidden ones too."""
+        with self._reading() as session:
+            return set(session.scalars(select(RunRow.id).where(RunRow.id.in_(ids))))
+
+    def beginning_with(self, prefix: str, limit: int) -> list[str]:
+        """Ids that begin like that, newest first; all ids for an empty prefix."""
+        runs = select(RunRow.id).where(SHOWN)
+        if prefix:
+            runs = runs.where(RunRow.id.startswith(prefix, autoescape=True))
+        newest = runs.order_by(RunRow.started_at.desc(), RunRow.id.desc())
+        with self._reading() as session:
+            return list(session.scalars(newest.limit(limit)))
+
+    def with_recording(self) -> list[str]:
+        """Runs that are over and should have a file."""
+        kept = RunRow.recording_state.in_(("complete", "recovered"))
+        with self._reading() as session:
+            return list(session.scalars(select(RunRow.id).where(SHOWN, kept)))
+
+    def loose(self) -> list[Loose]:
+        """All that may be deleted, oldest first."""
+        going_on = or_(RunRow.state == RUNNING, RunRow.recording_state == "writing")
+        wanted = select(RunRow.id, RunRow.label, RunRow.started_at, RunRow.size_bytes)
+        wanted = wanted.where(SHOWN, RunRow.pinned.is_(False), not_(going_on))
+        with self._reading() as session:
+            return [Loose(*found) for found in session.execute(wanted.order_by(RunRow.started_at, RunRow.id))]
+
+    def totals(self) -> Totals:
+        of_pinned = select(RunRow.pinned, func.count(), func.sum(RunRow.size_bytes))
+        with self._reading() as session:
+            found = session.execute(of_pinned.where(SHOWN).group_by(RunRow.pinned)).all()
+        sizes = {pinned: (runs, size) for pinned, runs, size in found}
+        (loose, loose_size), (pinned, pinned_size) = sizes.get(False, (0, 0)), sizes.get(True, (0, 0))
+        return Totals(loose + pinned, loose_size + pinned_size, pinned_size)
+
+    # Access --------------------------------------------------------------------------------------
+
+    @contextmanager
+    def _reading(self) -> Iterator[Session]:
+        try:
+            with Session(self._engine) as session:
+                yield session
+        except SQLAlchemyError as error:
+            raise CatalogueError(in_words(error, self.path)) from error
+
+    @contextmanager
+    def _changing(self) -> Iterator[Session]:
+        if self._access is not Access.WRITE:
+            raise CatalogueError(
+                f"the catalogue {self.path} cannot be written to; "
+                "give yourself the right to write to its folder, or choose another with --data"
+            )
+        try:
+            with Session(self._writing) as session, session.begin():
+                yield session
+        except IntegrityError:
+            raise
+        except SQLAlchemyError as error:
+            raise CatalogueError(in_words(error, self.path)) from error
+
+
+def _put(session: Session, record: RunRecord) -> None:
+    session.add(row_of(record))
+    session.flush()
+    session.add(SettingsRow(run_id=record.id, settings=record.settings))
+
+
+def _row(session: Session, id: str) -> RunRow:
+    row = session.get(RunRow, id)
+    if row is None or row.deleting:
+        raise NoSuchRun(id)
+    return row
+
+
+def _records(session: Session, ids: Collection[str]) -> list[RunRecord]:
+    rows = {row.id: row for row in session.scalars(select(RunRow).where(RunRow.id.in_(ids)))}
+    return [record_of(rows[id]) for id in ids]

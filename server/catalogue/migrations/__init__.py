@@ -1,0 +1,1 @@
+"""From older layouts of the catalogue to the newest one."""

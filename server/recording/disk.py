@@ -1,0 +1,83 @@
+"""Where recordings are written: the seam at which a simulated rig's disk can be full, read-only or slow."""
+
+from __future__ import annotations
+
+import os
+import shutil
+from pathlib import Path
+from typing import Protocol
+
+OWN_FILE = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC
+"""A recording never takes the place of another file."""
+
+
+class DiskFile(Protocol):
+    """An open file, without a buffer of its own."""
+
+    def fileno(self) -> int: ...
+    def write(self, data: bytes | bytearray | memoryview, /) -> int:
+        """Takes all of it; raises OSError."""
+        ...
+
+    def sync(self) -> None:
+        """Returns once everything is on the disk; raises OSError."""
+        ...
+
+    def close(self) -> None: ...
+
+
+class Disk(Protocol):
+    """What a recorder asks of a disk; everything raises OSError where the disk does."""
+
+    def create(self, path: Path) -> DiskFile:
+        """A new file; raises FileExistsError rather than touch another one."""
+        ...
+
+    def check(self, folder: Path) -> None:
+        """Whether a file can be made there; leaves none behind."""
+        ...
+
+    def free(self, folder: Path) -> int:
+        """Bytes."""
+        ...
+
+
+class LocalFile:
+    """A file of this computer."""
+
+    def __init__(self, path: Path) -> None:
+        self._number = os.open(path, OWN_FILE, 0o666)
+
+    def fileno(self) -> int:
+        return self._number
+
+    def write(self, data: bytes | bytearray | memoryview, /) -> int:
+        rest = memoryview(data)
+        while rest:
+            rest = rest[os.write(self._number, rest) :]
+        return len(data)
+
+    def sync(self) -> None:
+        os.fsync(self._number)
+
+    def close(self) -> None:
+        number, self._number = self._number, -1
+        if number >= 0:
+            os.close(number)
+
+
+class LocalDisk:
+    """This computer's."""
+
+    def create(self, path: Path) -> DiskFile:
+        return LocalFile(path)
+
+    def check(self, folder: Path) -> None:
+        probe = folder / f".writable-{os.getpid()}"
+        try:
+            os.close(os.open(probe, OWN_FILE, 0o666))
+        finally:
+            probe.unlink(missing_ok=True)
+
+    def free(self, folder: Path) -> int:
+        return shutil.disk_usage(folder).free

@@ -1,0 +1,280 @@
+"""The recording of one run, from its beginning to its row in the catalogue. Belongs to the writing thread.
+
+What goes wrong with the disk ends the recording, not the thread: `failure` says why, and what is readable is kept.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import functools
+import logging
+import threading
+import time
+from collections import deque
+from collections.abc import Callable, Iterator
+from datetime import datetime
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from control.news import Announcement
+from control.runs import Run
+from control.snapshot import Snapshot
+from server.metrics_json import metrics_json
+from server.recording.clock import RunClock
+from server.recording.conditions import Conditions, settings_json
+from server.recording.disk import Disk
+from server.recording.overview import Overview, point_of
+from server.recording.pictures import Picture
+from server.recording.row import record_of
+from server.recording.run_file import RunFile
+
+if TYPE_CHECKING:
+    from server.catalogue.catalogue import Catalogue
+
+log = logging.getLogger(__name__)
+
+LATE = 0.25
+"""A picture that is not encoded by then is written behind later ticks, s: what waits for it would be lost with it."""
+LAST_PICTURES = 1.0
+"""At the end of a run its last pictures are waited for this long, s."""
+MEGA = 1_000_000
+
+
+class Session:
+    """One run. failure: "" or why its recording has ended, in words.  finished: set when the file is closed."""
+
+    def __init__(
+        self, run: Run, conditions: Conditions, catalogue: Catalogue, folder: Path, disk: Disk
+    ) -> None:
+        self.run = run
+        self.failure = ""
+        self.no_room = 0
+        """Pictures for which the encoder had no room; counted by the rig's side."""
+        self.finished = threading.Event()
+        self._conditions = conditions
+        self._catalogue = catalogue
+        self._folder = folder
+        self._disk = disk
+        self._file: RunFile | None = None
+        self._clock: RunClock | None = None
+        self._overview = Overview()
+        self._pending: deque[tuple[Snapshot, Picture | None]] = deque()
+        self._late: list[Picture] = []
+        self._early: list[Announcement] = []
+        self._ended_at: datetime | None = None
+        self._no_pictures = 0
+        self._is_broken = False
+
+    @property
+    def is_kept(self) -> bool:
+        """Whether there is to be a file."""
+        return self._conditions.recording.enabled
+
+    @property
+    def quality(self) -> int:
+        """Of its pictures: JPEG's."""
+        return self._conditions.recording.quality
+
+    @property
+    def frames_left_out(self) -> int:
+        """Pictures that should have been recorded and are not."""
+        return self.no_room + self._no_pictures
+
+    @property
+    def size(self) -> int:
+        return 0 if self._file is None else self._file.size
+
+    def begin(self) -> None:
+        """The file and the row."""
+        settings = settings_json(self.run, self._conditions)
+        with self._guarded():
+            if self.is_kept:
+                self._file = self._create(settings)
+        self._tell_catalogue(
+            lambda: self._catalogue.add(record_of(settings, "none" if self._file is None else "writing"))
+        )
+
+    def _create(self, settings: dict[str, Any]) -> RunFile:
+        keep_free = self._conditions.recording.keep_free_MB * MEGA
+        return RunFile(self._folder / f"{self.run.id}.mcap", self._disk, settings, keep_free)
+
+    def tick(self, snapshot: Snapshot, picture: Picture | None) -> None:
+        """picture: that came with this tick; the tick is written once it is encoded."""
+        self._pending.append((snapshot, picture))
+        self.go_on()
+
+    def go_on(self) -> None:
+        """Write what is ready: ticks up to the first whose picture is still being encoded, and what is due."""
+        with self._guarded():
+            while self._pending and _is_ready(self._pending[0][1]):
+                self._write(*self._pending.popleft())
+            self._write_late_pictures()
+            if self._file is not None and self._clock is not None and not self._is_broken:
+                self._file.flush_if_due()
+
+    def event(self, line: Announcement) -> None:
+        """What is told before the first tick stands behind it in the file."""
+        if self._clock is None:
+            self._early.append(line)
+            return
+        with self._guarded():
+            if self._file is not None and not self._is_broken:
+                self._file.event(line)
+
+    def change(self, run: Run) -> None:
+        """Another selection from here on."""
+        self.run = run
+        with self._guarded():
+            if self._file is not None and self._clock is not None and not self._is_broken:
+                self._file.select(run.request.selection)
+        selection = settings_json(run, self._conditions)["run"]
+        self._tell_catalogue(
+            lambda: self._catalogue.update(
+                run.id,
+                controller=run.request.selection.controller.name,
+                trajectory=run.request.selection.trajectory.name,
+                selection={part: selection[part] for part in ("controller", "trajectory", "gait")},
+            )
+        )
+
+    def end(self, run: Run, ended_at: datetime) -> None:
+        """The run is over; its last half second is still to come."""
+        self.run, self._ended_at = run, ended_at
+        metrics = None if run.metrics is None else metrics_json(run.metrics)
+        self._tell_catalogue(
+            lambda: self._catalogue.update(
+                run.id, state=run.state.value, reason=run.reason, ended_at=ended_at, metrics=metrics
+            )
+        )
+
+    def finish(self) -> None:
+        """The end of the file; afterwards it is whole, or as whole as the disk allows."""
+        self._wait_for_pictures()
+        try:
+            complete = self._close_file()
+        finally:
+            self.finished.set()
+        self._tell_catalogue(lambda: self._note_file(complete))
+
+    def give_up(self, why: str) -> None:
+        """End the recording, keeping what is readable. From any thread."""
+        self.failure = self.failure or why
+
+    # Inside --------------------------------------------------------------------------------------
+
+    def _write(self, snapshot: Snapshot, picture: Picture | None) -> None:
+        clock = self._clock or self._begin_at(snapshot)
+        self._overview.add(clock.since_start(snapshot.time), functools.partial(point_of, snapshot))
+        if self._file is None or self._is_broken:
+            return
+        self._file.tick(snapshot)
+        while self._early:
+            self._file.event(self._early.pop(0))
+        if picture is None:
+            return
+        if picture.is_done:
+            self._write_picture(picture)
+        else:
+            self._late.append(picture)
+
+    def _begin_at(self, first: Snapshot) -> RunClock:
+        """The first tick tells what the rig's clock showed when the run began."""
+        run = first.run
+        elapsed = run.elapsed if run is not None and run.id == self.run.id else 0.0
+        clock = self._clock = RunClock(self.run.started_at, first.time - elapsed)
+        if self._file is not None:
+            self._file.begin(clock, self.run.request.selection, self._conditions.camera_model)
+        return clock
+
+    def _write_picture(self, picture: Picture) -> None:
+        if picture.jpeg and self._file is not None:
+            self._file.picture(picture)
+        elif not picture.jpeg:
+            self._no_pictures += 1
+
+    def _write_late_pictures(self) -> None:
+        while self._late and self._late[0].is_done:
+            self._write_picture(self._late.pop(0))
+
+    def _wait_for_pictures(self) -> None:
+        give_up = time.monotonic() + LAST_PICTURES
+        while (self._pending or self._late) and time.monotonic() < give_up and not self._is_broken:
+            self.go_on()
+            time.sleep(0.005)
+        while self._pending:
+            with self._guarded():
+                self._write(*self._pending.popleft())
+
+    def _close_file(self) -> bool:
+        """Whether the file has its end."""
+        file = self._file
+        if file is None:
+            return False
+        try:
+            file.finish(self._outcome(file), self._overview.as_json())
+        except OSError as error:
+            self.give_up(in_words(error))
+            return False
+        finally:
+            with contextlib.suppress(OSError):
+                file.close()
+        return True
+
+    def _outcome(self, file: RunFile) -> dict[str, Any]:
+        run = self.run
+        return {
+            "state": run.state.value,
+            "reason": run.reason,
+            "metrics": None if run.metrics is None else metrics_json(run.metrics),
+            "ended_at": None if self._ended_at is None else self._ended_at.isoformat(),
+            "ticks": file.ticks,
+            "frames": file.frames,
+            "frames_left_out": self.frames_left_out,
+            "failure": self.failure,
+        }
+
+    def _note_file(self, complete: bool) -> None:
+        sparkline = self._overview.sparkline()
+        file = self._file
+        if file is None:
+            self._catalogue.update(self.run.id, sparkline=sparkline)
+            return
+        self._catalogue.update(
+            self.run.id,
+            sparkline=sparkline,
+            size_bytes=file.size,
+            frames=file.frames,
+            recording_state="complete" if complete else "recovered",  # readable, though it lacks its end
+        )
+
+    @contextlib.contextmanager
+    def _guarded(self) -> Iterator[None]:
+        """An error of the disk ends the recording; so does a mistake in here, which may be anywhere."""
+        try:
+            yield
+        except OSError as error:
+            log.error("the recording of run %s ends: %s", self.run.id, in_words(error))
+            self._is_broken = True
+            self.give_up(in_words(error))
+        except Exception as error:
+            log.exception("the recording of run %s ends", self.run.id)
+            self._is_broken = True
+            self.give_up(f"the recorder has a mistake ({error!r})")
+
+    def _tell_catalogue(self, change: Callable[[], object]) -> None:
+        """Its trouble is no reason to stop anything: what it lacks is in the recording."""
+        from server.catalogue.errors import CatalogueError
+
+        try:
+            change()
+        except CatalogueError as error:
+            log.error("run %s: %s", self.run.id, error)
+
+
+def _is_ready(picture: Picture | None) -> bool:
+    return picture is None or picture.is_done or time.monotonic() - picture.asked_at > LATE
+
+
+def in_words(error: OSError) -> str:
+    """Why a disk has not done what it was asked for."""
+    return error.strerror or str(error)

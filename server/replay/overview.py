@@ -1,0 +1,54 @@
+"""The whole of a recording at a glance: its curves in a few points, its events, and what it takes to draw it."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Mapping
+from typing import Any
+
+from server.recording.foxglove import LEVELS
+from server.recording.reading import Recording
+from server.recording.topics import EVENTS
+from server.replay.series import computed_series
+from server.replay.then import camera_of, reference_points, robot_length_mm, workspace_half_mm
+
+SEVERITIES = {level: severity for severity, level in LEVELS.items()}
+MOST_EVENTS = 1000
+"""Lines of the event log that are told of; a run has about ten."""
+
+
+def overview_of(recording: Recording) -> dict[str, Any]:
+    """JSON; lab units in the names. Times are since the run's start."""
+    settings, outcome = recording.settings, recording.outcome or {}
+    camera = camera_of(settings)
+    return {
+        "started_at": recording.started_at.isoformat(timespec="milliseconds").replace("+00:00", "Z"),
+        "duration_s": recording.duration,
+        "ticks": outcome.get("ticks"),
+        "frames": outcome.get("frames"),
+        "is_whole": recording.is_whole,
+        "frame_size_px": None if camera is None else camera["size"],
+        "camera": camera,
+        "workspace": {"half_mm": workspace_half_mm(settings)},
+        "robot": {"length_mm": robot_length_mm(settings)},
+        "reference_points_mm": reference_points(settings),
+        "events": events_of(recording),
+        "series": series_of(recording),
+    }
+
+
+def series_of(recording: Recording) -> Mapping[str, Any]:
+    """Columns of the same length by name, time_s first."""
+    overview = recording.overview
+    return computed_series(recording) if overview is None else overview.get("series", overview)
+
+
+def events_of(recording: Recording) -> list[dict[str, Any]]:
+    entries = itertools.islice(recording.messages([EVENTS.name]), MOST_EVENTS)
+    return [event_json(entry.time_s, entry.data) for entry in entries if isinstance(entry.data, dict)]
+
+
+def event_json(time: float, line: Mapping[str, Any]) -> dict[str, Any]:
+    """line: of type foxglove.Log."""
+    severity = SEVERITIES.get(line.get("level", 0), "info")
+    return {"time_s": time, "severity": severity, "code": line.get("name"), "message": line.get("message")}

@@ -1,0 +1,34 @@
+"""The curves of a recording that has no overview yet: it is torn, or still being written."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from server.recording.reading import Recording
+from server.recording.recount import NOTHING, point_of_messages
+from server.recording.tick_reading import Tick
+
+MOST_POINTS = 600
+"""Instants that are looked up: about half a second's work, however long the recording is."""
+
+
+def computed_series(recording: Recording) -> dict[str, list[float | None]]:
+    """The same columns that the overview of a finished recording has."""
+    columns: dict[str, list[float | None]] = {}
+    for time, tick in sampled(recording):
+        for name, value in {"time_s": time, **point_of_messages(tick)}.items():
+            columns.setdefault(name, []).append(value)
+    return columns
+
+
+def sampled(recording: Recording) -> Iterator[tuple[float, Tick]]:
+    """Different ticks, evenly spread, with the time at which each is the newest, s since the run's start."""
+    last = None
+    for time in np.linspace(0.0, recording.duration, MOST_POINTS):
+        tick = recording.tick_at(float(time))
+        number = None if tick is None else tick.get("/state", NOTHING).get("tick")
+        if tick is not None and number != last:
+            last = number
+            yield float(time), tick

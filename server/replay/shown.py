@@ -1,0 +1,87 @@
+"""What is shown of one or two recordings at one instant, and how that looks in the scene."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from control.model import Pose
+from control.snapshot import ZERO, Vector
+from server.scene import View
+from server.scene_geometry import SceneGeometry
+from server.scene_robot import ShownRobot
+
+MM = 1e-3
+TRAIL = 60.0
+"""The trail reaches back this long, s, as the live one does."""
+
+Tick = Mapping[str, Any]
+
+
+@dataclass(frozen=True, slots=True)
+class Instant:
+    """at: time since the start of the run, s.  ticks: of each recording, as `GET /state` has them, None before the
+    first one."""
+
+    at: float
+    ticks: Sequence[Tick | None]
+
+
+@dataclass(frozen=True, slots=True)
+class Course:
+    """Where a run went. path: (m, 2) points of its reference, m.  times: (n,) s since its start.
+
+    places: (n, 2) m.
+    """
+
+    path: NDArray[np.float64]
+    times: NDArray[np.float64]
+    places: NDArray[np.float64]
+
+    def until(self, at: float) -> NDArray[np.float64]:
+        """(k, 2) the places of the last minute before `at`, m."""
+        first, last = np.searchsorted(self.times, (at - TRAIL, at), side="right")
+        return self.places[first:last]
+
+
+class ReplaySource:
+    """How an instant looks. geometry: of the first run's rig."""
+
+    def __init__(self, geometry: SceneGeometry, courses: Sequence[Course]) -> None:
+        self.geometry = geometry
+        self._courses = courses
+
+    def view(self, instant: Instant) -> View:
+        pairs = zip(instant.ticks, self._courses, strict=True)
+        robots = [robot_of(tick, course, instant.at) for tick, course in pairs]
+        return View(self.geometry, currents_of(instant.ticks[0]), robots)
+
+
+def robot_of(tick: Tick | None, course: Course, at: float) -> ShownRobot:
+    if tick is None:
+        return ShownRobot(None, 1, 0.0, course.path, course.places[:0])
+    pivot = -1 if tick["command"]["pivot"] == -1 else 1
+    tilt = math.radians(tick["body_tilt_deg"] or 0.0)
+    return ShownRobot(pose_of(tick["pose"]), pivot, tilt, course.path, course.until(at))
+
+
+def pose_of(pose: Mapping[str, float | None] | None) -> Pose | None:
+    if pose is None:
+        return None
+    x, y, heading = pose["x_mm"], pose["y_mm"], pose["heading_deg"]
+    if x is None or y is None or heading is None:
+        return None
+    return Pose(x * MM, y * MM, math.radians(heading))
+
+
+def currents_of(tick: Tick | None) -> Vector:
+    """The commanded currents, A."""
+    if tick is None:
+        return ZERO
+    x, y, z = (value or 0.0 for value in tick["currents_A"])
+    return x, y, z

@@ -1,0 +1,32 @@
+"""What of a rig the 3D scene draws to scale."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from control.coils import CoilSet
+from server.settings import MM, RigFile
+
+
+@dataclass(frozen=True, slots=True)
+class RobotSize:
+    """Lengths in m. length: between the pivots.  width, height: of the body."""
+
+    length: float
+    width: float
+    height: float
+
+
+@dataclass(frozen=True, slots=True)
+class SceneGeometry:
+    """workspace: half the square's side, m."""
+
+    coils: CoilSet
+    workspace: float
+    robot: RobotSize
+
+
+def geometry_of(settings: RigFile, coils: CoilSet) -> SceneGeometry:
+    robot = settings.robot
+    size = RobotSize(robot.length_mm * MM, robot.body_width_mm * MM, robot.body_height_mm * MM)
+    return SceneGeometry(coils, coils.workspace, size)

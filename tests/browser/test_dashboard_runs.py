@@ -1,0 +1,230 @@
+"""The tab of runs: what was recorded is found, looked at, edited, taken away, started again and tidied up."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+
+import pytest
+from dashboard_visit import PATIENCE, OpenTab, ServedRig, Visit, eventually
+from playwright.sync_api import Locator, Page, expect
+
+from control.runs import Choice, RunRequest, Selection
+from server.archive import Archive
+from server.assembly import build_machine
+from server.catalogue.records import RunRecord
+from server.headless import Headless
+from server.settings import RigFile
+
+pytestmark = pytest.mark.exclusive
+
+OLD_RUNS = 70
+"""In the catalogue beside the recorded ones, without a recording: more than one page of the list."""
+A_YEAR = timedelta(days=365)
+LABELS = ("wet plate", "dry plate")
+
+
+@dataclass(frozen=True, slots=True)
+class Library:
+    """A served rig with runs that were made before. recorded: their ids, oldest first."""
+
+    rig: ServedRig
+    recorded: list[str]
+
+
+def record_walks(archive: Archive) -> Iterator[str]:
+    """Two real walks of a second and a half, one after the other."""
+    for number, label in enumerate(LABELS):
+        id = f"20260101-00000{number}-walk"
+        machine = build_machine(RigFile(), realtime=False)
+        selection = replace(Selection(), trajectory=Choice("circle", {}))
+        request = RunRequest(selection, duration=1.5, label=label, tags=("paper",))
+        Headless(machine, recorder=archive.recorder).run(id, request)
+        yield id
+
+
+def fill_with_old_runs(archive: Archive) -> None:
+    """One a day, long ago; every tenth is pinned."""
+    for number in range(OLD_RUNS):
+        archive.catalogue.add(
+            RunRecord(
+                id=f"old-{number:03}",
+                started_at=datetime.now(UTC) - A_YEAR - timedelta(days=number),
+                state="aborted" if number == 7 else "finished",
+                reason="robot lost" if number == 7 else "",
+                pinned=number % 10 == 0,
+                controller="geometric",
+                trajectory="eight",
+            )
+        )
+
+
+@pytest.fixture(scope="module")
+def library(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Library]:
+    data = tmp_path_factory.mktemp("library")
+    archive = Archive.open(data, patient=True)
+    recorded = list(record_walks(archive))
+    fill_with_old_runs(archive)
+    archive.close()
+    rig = ServedRig(Path(data))
+    rig.start()
+    yield Library(rig, recorded)
+    rig.stop()
+
+
+def button(place: Page | Locator, name: str) -> Locator:
+    return place.get_by_role("button", name=name, exact=True)
+
+
+def field(place: Locator, name: str) -> Locator:
+    return place.get_by_role("textbox", name=name, exact=True)
+
+
+def names(page: Page) -> Locator:
+    return page.locator(".run-name")
+
+
+def details(page: Page) -> Locator:
+    return page.get_by_role("complementary")
+
+
+def total(page: Page) -> Locator:
+    return page.locator(".runs-foot")
+
+
+def visit_runs(library: Library, open_tab: OpenTab, **size: int) -> Visit:
+    library.rig.rest()
+    visit = open_tab(library.rig.url, **size)
+    expect(names(visit.page).first).to_be_visible()
+    return visit
+
+
+def test_a_run_is_found_looked_at_edited_and_taken_away(library: Library, open_tab: OpenTab) -> None:
+    visit = visit_runs(library, open_tab)
+    page = visit.page
+    expect(total(page)).to_contain_text(f"{OLD_RUNS + 2} runs")
+    expect(names(page)).to_have_count(50)
+    button(page, "Show more").scroll_into_view_if_needed()
+    expect(names(page)).to_have_count(OLD_RUNS + 2)
+    page.get_by_label("State").select_option("aborted")
+    expect(names(page)).to_have_text(["old-007"])
+    expect(page.get_by_text("1 found")).to_be_visible()
+    button(page, "Show all runs").click()
+    page.get_by_label("Search runs").fill("wet")
+    expect(names(page)).to_have_text(["wet plate"])
+
+    names(page).first.press("Enter")
+    shown = details(page)
+    expect(shown.get_by_role("heading", name="wet plate")).to_be_visible()
+    expect(shown.locator("div").filter(has_text=re.compile(r"^Mean error\d\.\d{3} mm$"))).to_be_visible()
+    figure = shown.get_by_role("img", name="Path, error over time")
+    eventually(lambda: bool(figure.evaluate("image => image.naturalWidth > 100")), "a figure of the run", 2 * PATIENCE)
+    expect(shown.get_by_text("as the rig is now")).to_be_visible()
+    expect(button(shown, "Run again")).to_be_disabled()
+
+    shown.get_by_text("Download").click()
+    with page.expect_download() as started:
+        shown.get_by_role("link", name="Table, CSV").click()
+    table = Path(started.value.path()).read_text()
+    assert table.startswith("time_s,")
+    assert started.value.suggested_filename.endswith(".csv")
+
+    edit_and_undo(library, page)
+    assert visit.complaints == []
+    assert visit.foreign(library.rig.url) == []
+
+
+def edit_and_undo(library: Library, page: Page) -> None:
+    shown, id = details(page), library.recorded[0]
+    field(shown, "Label").fill("wet plate, again")
+    expect(shown.get_by_text("Saved")).to_be_visible()
+    assert library.rig.ask(f"/runs/{id}")["label"] == "wet plate, again"
+    expect(names(page)).to_have_text(["wet plate, again"])
+    button(shown, "Undo").click()
+    expect(shown.get_by_text("As before")).to_be_visible()
+    assert library.rig.ask(f"/runs/{id}")["label"] == "wet plate"
+    shown.get_by_label("Tags", exact=True).fill("demo")
+    shown.get_by_label("Tags", exact=True).press("Enter")
+    expect(button(shown, "Remove the tag demo")).to_be_visible()
+    button(shown, "Pin this run").click()
+    expect(button(shown, "Delete…")).to_be_disabled()
+    button(shown, "Pin this run").click()
+    expect(button(shown, "Delete…")).to_be_enabled()
+    field(shown, "Notes").fill("water on the plate")
+    button(shown, "Close").click()
+    eventually(
+        lambda: library.rig.ask(f"/runs/{id}")["notes"] == "water on the plate",
+        "notes that were typed just before the details were closed",
+    )
+
+
+def test_a_run_is_listed_while_it_goes_on_and_started_again(library: Library, open_tab: OpenTab) -> None:
+    visit = visit_runs(library, open_tab)
+    page = visit.page
+    names(page).filter(has_text="dry plate").click()
+    shown = details(page)
+    expect(shown).to_contain_text("arm the rig first")
+    library.rig.send("POST", "/arm")
+    button(shown, "Run again").click()
+    expect(page.get_by_role("status")).to_contain_text("running")
+    expect(page.locator(".recording-sign")).to_contain_text("REC")
+    expect(shown).to_contain_text("Started again")
+    newest = page.get_by_role("row").nth(1)
+    expect(newest).to_contain_text("dry plate again")
+    expect(newest).to_contain_text("finished")
+    expect(newest.locator("svg.sparkline")).to_be_visible()
+    button(shown, "Show it").click()
+    expect(button(details(page), "Replay")).to_be_enabled()
+    assert visit.complaints == []
+
+
+def test_runs_are_compared_deleted_and_pruned_and_stop_stays_in_reach(
+    library: Library, open_tab: OpenTab
+) -> None:
+    visit = visit_runs(library, open_tab)
+    page = visit.page
+    for name in ("old-001", "old-010"):
+        page.get_by_label(f"Select {name}").press("Enter")
+    expect(button(page, "Compare")).to_be_disabled()
+    button(page, "Delete…").click()
+    asked = page.get_by_role("dialog")
+    expect(asked).to_contain_text("Delete old-001?")
+    expect(asked).to_contain_text("old-010 stays")
+    button(page, "STOP").click()
+    expect(page.get_by_role("status")).to_contain_text("fault")
+    button(asked, "Delete").click()
+    expect(names(page).filter(has_text="old-001")).to_have_count(0)
+    expect(names(page).filter(has_text="old-010")).to_have_count(1)
+    button(page, "Untick").click()
+
+    button(page, "Prune…").click()
+    asked.get_by_label("Older than").fill("300")
+    expect(asked).to_contain_text(f"{OLD_RUNS - 8} runs, 0 kB would go")
+    button(asked, f"Delete {OLD_RUNS - 8} runs").click()
+    expect(asked).to_have_count(0)
+    eventually(lambda: library.rig.ask("/runs")["totals"]["runs"] < 15, "only new and pinned runs are left")
+    expect(names(page).filter(has_text="old-002")).to_have_count(0)
+
+    for label in LABELS:
+        page.get_by_label(f"Select {label}", exact=True).press("Enter")
+    button(page, "Compare").click()
+    expect(page).to_have_url(re.compile(f"#replay={','.join(library.recorded)}"))
+    assert visit.complaints == []
+
+
+def test_on_a_phone_the_details_are_a_sheet_under_the_bar(library: Library, open_tab: OpenTab) -> None:
+    page = visit_runs(library, open_tab, width=390, height=844).page
+    names(page).filter(has_text="wet plate").click()
+    sheet, bar = details(page).bounding_box(), page.get_by_role("banner").bounding_box()
+    assert sheet is not None
+    assert bar is not None
+    assert sheet["y"] >= bar["height"]
+    assert sheet["width"] == 390
+    expect(button(page, "STOP")).to_be_in_viewport()
+    expect(details(page).get_by_role("heading", name="wet plate")).to_be_focused()
+    assert page.evaluate("document.documentElement.scrollWidth") <= 390
+    button(details(page), "Close").click()
+    expect(names(page).filter(has_text="wet plate")).to_be_focused()

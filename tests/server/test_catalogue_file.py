@@ -1,0 +1,225 @@
+"""The catalogue's file: made, brought up to date, put aside, and what it says where a disk does not let it."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import resource
+import signal
+import sqlite3
+from collections.abc import Callable
+from contextlib import closing
+from pathlib import Path
+
+import pytest
+from alembic.autogenerate import compare_metadata
+from alembic.migration import MigrationContext
+from alembic.script import ScriptDirectory
+from catalogue_bench import record
+from sqlalchemy import create_engine
+
+from server.catalogue.catalogue import Catalogue
+from server.catalogue.errors import CatalogueError
+from server.catalogue.migrations.upgrade import configuration, upgrade
+from server.catalogue.opening import NAME
+from server.catalogue.tables import REVISIONS, VERSION, Base
+
+
+def schema(path: Path) -> list[tuple[str, str]]:
+    with closing(sqlite3.connect(path)) as database:
+        columns = "SELECT m.name, c.name || ' ' || c.type || ' ' || c.[notnull] || ' ' || c.pk"
+        tables = f"{columns} FROM sqlite_master m, pragma_table_info(m.name) c"
+        indexes = "SELECT name, sql FROM sqlite_master WHERE type = 'index' AND sql IS NOT NULL"
+        return sorted((*database.execute(tables), *database.execute(indexes)))
+
+
+def migrated(path: Path) -> None:
+    engine = create_engine(f"sqlite:///{path}")
+    with engine.begin() as connection:
+        upgrade(connection)
+    engine.dispose()
+
+
+def test_all_migrations_together_make_the_tables_of_a_new_catalogue(tmp_path: Path) -> None:
+    migrated(tmp_path / "migrated.sqlite")
+    Catalogue.open(tmp_path).close()
+    assert schema(tmp_path / NAME) == schema(tmp_path / "migrated.sqlite")
+
+
+def test_the_tables_are_those_that_the_program_declares(tmp_path: Path) -> None:
+    migrated(tmp_path / NAME)
+    engine = create_engine(f"sqlite:///{tmp_path / NAME}")
+    with engine.connect() as connection:
+        assert compare_metadata(MigrationContext.configure(connection), Base.metadata) == []
+    engine.dispose()
+
+
+def test_the_known_layouts_are_the_migrations_there_are() -> None:
+    scripts = ScriptDirectory.from_config(configuration())
+    assert scripts.get_current_head() == VERSION
+    assert tuple(reversed([script.revision for script in scripts.walk_revisions()])) == REVISIONS
+
+
+def test_opening_again_makes_nothing_anew(tmp_path: Path) -> None:
+    first = Catalogue.open(tmp_path)
+    first.add(record(1))
+    first.close()
+    again = Catalogue.open(tmp_path)
+    assert (first.is_new, again.is_new, again.page().total) == (True, False, 1)
+    again.close()
+
+
+def test_a_newer_catalogue_is_refused_and_left_alone(tmp_path: Path) -> None:
+    Catalogue.open(tmp_path).close()
+    with closing(sqlite3.connect(tmp_path / NAME)) as database, database:
+        database.execute("UPDATE alembic_version SET version_num = '9999'")
+    before = (tmp_path / NAME).read_bytes()
+    with pytest.raises(CatalogueError, match="written by a newer pivotrig .*'9999'.*update pivotrig"):
+        Catalogue.open(tmp_path)
+    assert (tmp_path / NAME).read_bytes() == before
+
+
+def rubbish(path: Path) -> None:
+    path.write_bytes(os.urandom(20_000))
+
+
+def torn_in_the_middle(path: Path) -> None:
+    content = bytearray(path.read_bytes())
+    content[5000:20000] = os.urandom(15_000)
+    path.write_bytes(content)
+
+
+def another_program_s(path: Path) -> None:
+    path.unlink()
+    with closing(sqlite3.connect(path)) as database, database:
+        database.execute("CREATE TABLE bookmarks (url TEXT)")
+
+
+@pytest.mark.parametrize("breaking", [rubbish, torn_in_the_middle, another_program_s])
+def test_a_broken_catalogue_is_put_aside_and_a_new_one_made(tmp_path: Path, breaking) -> None:
+    first = Catalogue.open(tmp_path)
+    for index in range(30):
+        first.add(record(index))
+    first.close()
+    breaking(tmp_path / NAME)
+    broken = schema(tmp_path / NAME) if breaking is another_program_s else (tmp_path / NAME).read_bytes()
+    anew = Catalogue.open(tmp_path)
+    assert (anew.is_new, anew.page().total) == (True, 0)
+    assert anew.put_aside is not None
+    assert anew.put_aside.name.startswith(f"{NAME}.broken-")
+    kept = anew.put_aside
+    assert broken == (schema(kept) if breaking is another_program_s else kept.read_bytes())
+    anew.close()
+
+
+@pytest.mark.parametrize("cut", [0, 1, 100, 4096, 10_000])
+def test_a_cut_catalogue_never_ends_the_program(tmp_path: Path, cut: int) -> None:
+    first = Catalogue.open(tmp_path)
+    first.add(record(1))
+    first.close()
+    os.truncate(tmp_path / NAME, cut)
+    anew = Catalogue.open(tmp_path)
+    assert (anew.is_new, anew.page().total) == (True, 0)
+    anew.close()
+
+
+def test_a_write_waits_for_another_program_and_gives_up_in_words(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("server.catalogue.database.BUSY", 0.05)
+    catalogue = Catalogue.open(tmp_path)
+    with closing(sqlite3.connect(tmp_path / NAME, isolation_level=None)) as other:
+        other.execute("BEGIN IMMEDIATE")
+        with pytest.raises(CatalogueError, match="another program has been writing"):
+            catalogue.add(record(1))
+        assert catalogue.page().total == 0
+        other.execute("ROLLBACK")
+    catalogue.add(record(1))
+    catalogue.close()
+
+
+def in_a_child(work: Callable[..., str], *arguments: object) -> list[str]:
+    """The lines that `work` answers in a process of its own, which has all that this one has loaded."""
+    context = multiprocessing.get_context("fork")
+    ours, theirs = context.Pipe(duplex=False)
+    with ours, theirs:
+        child = context.Process(target=lambda: theirs.send(work(*arguments)))
+        child.start()
+        answer = ours.recv() if ours.poll(30.0) else ""
+        child.join()
+    assert child.exitcode == 0
+    return answer.splitlines()
+
+
+def looked_at_by_nobody(data: Path) -> str:
+    """What somebody finds who has no right to write into the folder."""
+    if os.getuid() == 0:
+        os.setuid(65534)
+    catalogue = Catalogue.open(data)
+    found = f"{catalogue.page().total} {catalogue.is_new}\n"
+    try:
+        catalogue.update(record(1).id, label="x")
+    except CatalogueError as error:
+        found += str(error)
+    catalogue.close()
+    return found
+
+
+@pytest.fixture
+def foreign(tmp_path: Path):
+    """A data folder that everybody may read and nobody else may write to, wherever it lies."""
+    folder = tmp_path / "data"
+    folder.mkdir()
+    for parent in [folder, *list(folder.parents)[:3]]:
+        parent.chmod(0o755)
+    yield folder
+    folder.chmod(0o755)
+
+
+@pytest.mark.parametrize("still_open", [False, True])
+def test_a_catalogue_that_may_not_be_written_to_can_be_read(foreign: Path, still_open: bool) -> None:
+    catalogue = Catalogue.open(foreign)
+    catalogue.add(record(1))
+    if not still_open:
+        catalogue.close()
+    foreign.chmod(0o555)
+    first, refused = in_a_child(looked_at_by_nobody, foreign)
+    assert first == "1 False"
+    assert "cannot be written to; give yourself the right to write to its folder" in refused
+    foreign.chmod(0o755)
+    catalogue.close()
+
+
+def test_where_no_catalogue_can_be_made_there_are_no_runs(foreign: Path) -> None:
+    foreign.chmod(0o555)
+    first, refused = in_a_child(looked_at_by_nobody, foreign)
+    assert first == "0 False"
+    assert "cannot be written to" in refused
+    assert list(foreign.iterdir()) == []
+
+
+def test_a_data_folder_that_is_a_file_is_named(tmp_path: Path) -> None:
+    (tmp_path / "data").write_text("no folder")
+    with pytest.raises(CatalogueError, match="the data folder .*data cannot be used"):
+        Catalogue.open(tmp_path / "data")
+
+
+def filled_up(data: Path) -> str:
+    catalogue = Catalogue.open(data)
+    catalogue.add(record(1))
+    largest = (data / f"{NAME}-wal").stat().st_size + 8192
+    signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (largest, largest))
+    try:
+        catalogue.update(record(1).id, notes="x" * 200_000)
+    except CatalogueError as error:
+        return f"{error}\n{catalogue.get(record(1).id).notes}"
+    return ""
+
+
+def test_a_full_disk_changes_nothing_and_says_so(tmp_path: Path) -> None:
+    said, *notes = in_a_child(filled_up, tmp_path)
+    assert f"the disk of {tmp_path / NAME} " in said
+    again = Catalogue.open(tmp_path)
+    assert "\n".join(notes) == again.get(record(1).id).notes == record(1).notes
+    again.close()

@@ -1,0 +1,325 @@
+"""What becomes of a recording when the disk does not do its part: it ends, says so, and what was written is kept."""
+
+from __future__ import annotations
+
+import errno
+import fcntl
+import json
+import os
+import resource
+import signal
+import subprocess
+import sys
+import textwrap
+import threading
+import time
+from dataclasses import replace
+from types import SimpleNamespace
+
+import pytest
+from mcap.stream_reader import StreamReader
+
+from control.runs import RunState
+from control.safety import Refused
+from control.simulation.disk_faults import DiskFaults
+from server.archive import Archive
+from server.faulty_disk import FaultyDisk
+from server.recording.disk import LocalDisk
+from server.recording.reading import Recording
+from server.recording.recorder import LONGEST_WAIT
+from server.recording_section import RecordingSection
+from tests.server.mcap_doctor import examine
+from tests.server.recordings_bench import RecordingsBench, Walk
+
+LOST_AT_MOST = 0.25 + 2.0 / 60.0
+"""Of a run whose disk fails, s: the open chunk, and a tick on its way."""
+TOLD_WITHIN = 1.0
+
+
+@pytest.fixture(scope="module")
+def bench():
+    return RecordingsBench()
+
+
+@pytest.fixture
+def archive(tmp_path):
+    archive = Archive.open(tmp_path)
+    yield archive
+    archive.close()
+
+
+def last_tick(path):
+    """Time of the newest tick of a recording, since the run's start, s."""
+    with Recording.open(path) as recording:
+        return recording.duration
+
+
+def wait_for(condition, within=5.0):
+    give_up = time.monotonic() + within
+    while not condition():
+        assert time.monotonic() < give_up
+        time.sleep(0.002)
+
+
+class AtPace:
+    """Told of each tick: lets the recorder's thread keep up, and does something at one of them."""
+
+    def __init__(self, recorder, at=None, do=None):
+        self._recorder = recorder
+        self._at = at
+        self._do = do
+        self.failed_at = None
+
+    def __call__(self, snapshot):
+        wait_for(lambda: self._recorder.status.ticks_waiting == 0)
+        if snapshot.tick == self._at:
+            self._do()
+        if self._recorder.failure and self.failed_at is None:
+            self.failed_at = snapshot
+
+
+@pytest.mark.parametrize(("fault", "words"), [("full", "No space left"), ("read_only", "Read-only")])
+def test_a_disk_that_fills_up_or_turns_read_only_ends_the_recording(bench, archive, fault, words):
+    faults = DiskFaults(time.monotonic)
+    archive.recorder.disk = FaultyDisk(LocalDisk(), faults)
+    failures = []
+    watch = AtPace(archive.recorder, at=120, do=lambda: setattr(faults, fault, True))
+
+    def watched(snapshot):
+        watch(snapshot)
+        failures.append(archive.recorder.failure)
+
+    id = bench.record_in(archive, Walk(duration=4.0), watched)
+
+    assert words in failures[-1]
+    assert failures.index(failures[-1]) <= 120 + TOLD_WITHIN * 60
+    assert last_tick(archive.path_of(id)) >= 2.0 - LOST_AT_MOST
+    assert archive.catalogue.get(id).recording_state == "recovered"
+
+
+class Shrinking(LocalDisk):
+    """A disk on which somebody else writes."""
+
+    left = 1 << 40
+
+    def free(self, folder):
+        return self.left
+
+
+def test_a_recording_ends_before_the_disk_is_full_and_is_whole(bench, archive):
+    disk = archive.recorder.disk = Shrinking()
+    watch = AtPace(archive.recorder, at=60, do=lambda: setattr(disk, "left", 499_000_000))
+    failures = []
+
+    def watched(snapshot):
+        watch(snapshot)
+        if snapshot.tick > 60 and not archive.recorder.failure:
+            time.sleep(0.02)
+        failures.append(archive.recorder.failure)
+
+    id = bench.record_in(archive, Walk(duration=4.0), watched)
+
+    assert "499 MB are free" in failures[-1]
+    assert "keep_free_MB = 500" in failures[-1]
+    examine(archive.path_of(id))
+    with Recording.open(archive.path_of(id)) as recording:
+        assert recording.outcome["failure"] == failures[-1]
+        assert recording.outcome["state"] == "finished"
+
+
+def test_a_run_that_cannot_be_recorded_is_refused_early(archive):
+    settings = RecordingSection()
+    archive.recorder.check(settings)
+
+    with pytest.raises(Refused, match="are needed"):
+        archive.recorder.check(RecordingSection(keep_free_MB=1_000_000))
+
+    faults = DiskFaults(time.monotonic, read_only=True)
+    archive.recorder.disk = FaultyDisk(LocalDisk(), faults)
+    with pytest.raises(Refused, match="Read-only file system"):
+        archive.recorder.check(settings)
+    archive.recorder.check(RecordingSection(enabled=False))
+
+
+def test_a_folder_that_cannot_be_made_is_refused_early(tmp_path):
+    archive = Archive.open(tmp_path)
+    try:
+        archive.folder.rmdir()
+        archive.folder.write_text("a file where the folder should be")
+        with pytest.raises(Refused, match="nothing can be written"):
+            archive.recorder.check(RecordingSection())
+    finally:
+        archive.close()
+
+
+class Stuck(LocalDisk):
+    """A disk whose `sync` waits."""
+
+    def __init__(self):
+        self.may_go_on = threading.Event()
+        self.may_go_on.set()
+
+    def create(self, path):
+        file = super().create(path)
+        sync = file.sync
+        file.sync = lambda: (self.may_go_on.wait(30.0), sync())
+        return file
+
+
+def test_a_disk_that_hangs_for_a_while_loses_nothing(bench, archive):
+    disk = archive.recorder.disk = Stuck()
+    held = []
+
+    def watch(snapshot):
+        if snapshot.tick == 30:
+            disk.may_go_on.clear()
+            time.sleep(1.1)  # the next second of the disk comes, and hangs
+        if snapshot.tick == 200:
+            wait_for(lambda: archive.recorder.status.ticks_waiting > 100)
+            held.append(archive.recorder.failure)
+            disk.may_go_on.set()
+
+    id = bench.record_in(archive, Walk(duration=5.0), watch)
+
+    assert held == [""]
+    with Recording.open(archive.path_of(id)) as recording:
+        assert recording.outcome["failure"] == ""
+        assert len(list(recording.ticks(topics=["/state"]))) >= 300
+
+
+def test_a_disk_that_hangs_for_long_ends_the_recording_and_keeps_what_was_handed_over(bench, archive):
+    disk = archive.recorder.disk = Stuck()
+    failures = []
+
+    def watch(snapshot):
+        if snapshot.tick == 1:
+            wait_for(lambda: archive.recorder.status.size > 0 and archive.recorder.status.ticks_waiting == 0)
+            disk.may_go_on.clear()
+            time.sleep(1.1)
+        failures.append(archive.recorder.failure)
+        if snapshot.tick == 1000:
+            disk.may_go_on.set()
+
+    id = bench.record_in(archive, Walk(duration=17.0, frame_rate=0.0), watch)
+
+    first = next(index for index, failure in enumerate(failures) if failure)
+    assert "the disk is too slow" in failures[first]
+    assert first / 60.0 == pytest.approx(LONGEST_WAIT, abs=0.2)
+    examine(archive.path_of(id))
+    assert last_tick(archive.path_of(id)) >= LONGEST_WAIT
+    with Recording.open(archive.path_of(id)) as recording:
+        assert recording.outcome["failure"] == failures[first]
+
+
+def test_a_recording_never_takes_the_place_of_another_file(bench, archive):
+    walk = Walk(duration=1.0)
+    path = archive.path_of(walk.id)
+    path.write_text("somebody's own")
+    watch = AtPace(archive.recorder)
+    bench.record_in(archive, walk, watch)
+    assert path.read_text() == "somebody's own"
+    assert watch.failed_at is not None
+    assert archive.catalogue.get(walk.id).state == "finished"
+
+
+def test_a_file_is_locked_while_it_is_written_and_only_then(bench, archive):
+    held = []
+
+    def is_locked(path):
+        with path.open("rb") as file:
+            try:
+                fcntl.flock(file.fileno(), fcntl.LOCK_SH | fcntl.LOCK_NB)
+            except BlockingIOError:
+                return True
+            return False
+
+    def watch(snapshot):
+        if snapshot.tick == 30:
+            wait_for(lambda: archive.recorder.status.size > 0)
+            held.append(is_locked(archive.path_of(Walk().id)))
+
+    id = bench.record_in(archive, Walk(duration=1.0), watch)
+    assert held == [True]
+    assert not is_locked(archive.path_of(id))
+
+
+def test_what_is_flushed_is_readable_while_the_run_goes_on(bench, archive):
+    """As everybody's reader sees it who does not need the end of the file."""
+    found = []
+
+    def watch(snapshot):
+        if snapshot.tick == 120:
+            wait_for(lambda: archive.recorder.status.ticks_waiting == 0)
+            with archive.path_of(Walk().id).open("rb") as file, pytest.raises(Exception, match=""):
+                for record in StreamReader(file).records:
+                    found.append(record)
+
+    bench.record_in(archive, Walk(duration=3.0, frame_rate=0.0), watch)
+    times = [record.log_time for record in found if hasattr(record, "log_time")]
+    assert (max(times) - min(time for time in times if time)) * 1e-9 >= 2.0 - LOST_AT_MOST
+
+
+def test_pictures_are_left_out_when_there_is_no_time_for_them_and_ticks_never(bench, archive):
+    large = SimpleNamespace(frames=0)
+    walk = Walk(duration=2.0, frame_rate=60.0)
+
+    def watch(snapshot):
+        large.frames = archive.recorder.status.frames_left_out
+
+    id = bench.record_in(archive, walk, watch)
+    with Recording.open(archive.path_of(id)) as recording:
+        outcome = recording.outcome
+        assert outcome["ticks"] >= 120
+        assert outcome["frames"] + outcome["frames_left_out"] >= 118
+        assert outcome["frames_left_out"] >= large.frames > 0
+        assert len(list(recording.ticks())) == outcome["ticks"]
+
+
+def test_a_run_without_a_recording_has_its_figures_all_the_same(bench, archive):
+    conditions = bench.conditions
+
+    def without(walk):
+        made = conditions(walk)
+        recording = made.settings.recording.model_copy(update={"enabled": False})
+        return replace(made, settings=made.settings.model_copy(update={"recording": recording}))
+
+    other = RecordingsBench.__new__(RecordingsBench)
+    other.__dict__.update(bench.__dict__)
+    other.conditions = without
+    id = other.record_in(archive, Walk(duration=1.0))
+    row = archive.catalogue.get(id)
+    assert row.recording_state == "none"
+    assert row.metrics is not None
+    assert row.state == RunState.FINISHED
+    assert not list(archive.folder.iterdir())
+
+
+CHILD = """
+    import json, resource, signal, sys
+    from pathlib import Path
+    from server.archive import Archive
+    from tests.server.recordings_bench import RecordingsBench, Walk
+
+    bench = RecordingsBench()
+    archive = Archive.open(Path(sys.argv[1]), patient=True)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (400_000, 400_000))
+    failures = set()
+    id = bench.record_in(archive, Walk(duration=4.0), lambda _: failures.add(archive.recorder.failure))
+    archive.close()
+    print(json.dumps({"id": id, "failures": sorted(failures)}))
+"""
+
+
+def test_a_file_that_may_not_grow_any_further_keeps_all_that_fitted(tmp_path):
+    """A limit of the system, not one of ours."""
+    told = subprocess.run(
+        [sys.executable, "-c", textwrap.dedent(CHILD), str(tmp_path)], capture_output=True, text=True, timeout=60
+    )  # fmt: skip
+    assert told.returncode == 0, told.stderr
+    answer = json.loads(told.stdout)
+    assert answer["failures"] == ["", os.strerror(errno.EFBIG)]
+    path = tmp_path / "recordings" / f"{answer['id']}.mcap"
+    assert 300_000 < path.stat().st_size <= 400_000
+    with Recording.open(path) as recording:
+        assert len(list(recording.ticks())) > 30
+        assert recording.settings["run"]["id"] == answer["id"]

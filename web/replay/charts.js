@@ -1,0 +1,47 @@
+/** The charts while a recording is shown: the whole run or a part of it, with the time of the replay in each. */
+import { Chart, CHARTS } from "../charts/charts.js";
+import { html, useEffect, useMemo } from "../view.js";
+import { setLoop, zoomOut } from "./player.js";
+import { useReplay } from "./replay.js";
+import { Badge, Line, stamp } from "./signs.js";
+import { wholeRun } from "./timeline.js";
+
+export function ReplayCharts() {
+  const runs = useReplay((replay) => replay.runs) ?? [];
+  const zoom = useReplay((replay) => replay.zoom);
+  const source = useMemo(() => wholeRun(runs), [runs]);
+  const charts = useMemo(() => (runs.length > 1 ? CHARTS.map(compared) : CHARTS), [runs.length > 1]);
+  useEffect(source.changed, [zoom]);
+  if (runs.length === 0) return html`<section class="charts" aria-label="Charts of the recording"></section>`;
+  return html`
+    <section class="charts" aria-label="Charts of the recording">
+      <${Range} zoom=${zoom} runs=${runs} />
+      ${charts.map((chart) => html`
+        <${Chart} key=${chart.title} ...${chart} empty="Nothing was recorded of this." source=${source} span="of the recording" />
+      `)}
+    </section>
+  `;
+}
+
+/** What is shown, and how to get from a part to the whole. */
+function Range({ zoom, runs }) {
+  return html`
+    <div class="charts-range">
+      <${Badge} />
+      ${runs.length > 1 && runs.map((run, index) => html`<span><${Line} index=${index} />${run.name}</span>`)}
+      ${zoom === null
+        ? html`<span class="hint">click: go there · drag: a closer look</span>`
+        : html`
+          <span class="hint">${stamp(zoom[0])} – ${stamp(zoom[1])}</span>
+          <button class="quiet" type="button" onClick=${() => setLoop(...zoom)}>Loop this part</button>
+          <button class="quiet" type="button" onClick=${zoomOut}>Whole run</button>`}
+    </div>
+  `;
+}
+
+/** Two runs in one chart: the estimates of both, the second's dashed; the rest would be too much to read. */
+function compared(chart) {
+  const estimates = chart.curves.filter(({ label }) => label);
+  const curves = estimates.flatMap((curve) => [curve, { ...curve, run: 1, style: "dashes", label: "" }]);
+  return { ...chart, curves, note: "" };
+}

@@ -1,0 +1,136 @@
+/** Asks the server what the recordings hold at the time that is shown: one question at a time, the newest only. */
+import { keepOpen } from "../live/socket.js";
+import { get, say, set } from "../store.js";
+import { now_s, onTime, waitWhile } from "./player.js";
+
+/** Questions are at least so far apart: a screen cannot show more, ms. */
+const PERIOD_MS = 33;
+/** The clock waits for an answer that takes longer, ms. */
+const PATIENCE_MS = 400;
+/** Before each picture: which run it is of, and a reserved number, both unsigned 32 bits, little endian. */
+const HEADER_BYTES = 8;
+
+/** The newest answer: {at_s, ticks: [tick or null per run], pictures: [{time_s, captured_s, tick} or null per run]}. */
+export const answer = { at_s: 0, ticks: [], pictures: null };
+
+const answerListeners = new Set();
+/** Index of a run -> hears of its pictures. */
+const pictureListeners = new Map();
+/** Index of a run -> its newest picture, which the server does not send twice; null where it is not shown. */
+const pictures = new Map();
+
+let socket = null;
+let forgetTime = null;
+let send = null;
+let waiting = false;
+let asked = { at_s: null, frame: null, at: -Infinity };
+let timer = 0;
+
+export function onAnswer(listener) {
+  answerListeners.add(listener);
+  return () => answerListeners.delete(listener);
+}
+
+/** Pictures of one run, as {image: Blob or null when there is none at this time, about: what is known of it}. */
+export function onPicture(index, listener) {
+  pictureListeners.set(index, listener);
+  if (pictures.has(index)) listener(pictures.get(index));
+  askAgain();
+  return () => pictureListeners.delete(index);
+}
+
+const NO_PICTURE = { image: null, about: null, shown: false };
+
+/** What the newest answer says of a run's picture; a new one follows by itself. */
+function tellOfPicture(about, index) {
+  const known = pictures.get(index);
+  if (about === null) showPicture(index, { ...known, shown: false }, NO_PICTURE);
+  else if (!about.new && known && !known.shown) showPicture(index, { ...known, shown: true });
+}
+
+function showPicture(index, kept, told = kept) {
+  pictures.set(index, kept);
+  pictureListeners.get(index)?.(told);
+}
+
+export function openLine(ids) {
+  const query = ids.map((id) => `run=${encodeURIComponent(id)}`).join("&");
+  socket = keepOpen(`/api/v1/replay?${query}`, { message: receive, lost });
+  forgetTime = onTime(ask);
+  waitWhile(() => send === null || (waiting && performance.now() - asked.at > PATIENCE_MS));
+}
+
+export function closeLine() {
+  socket?.close();
+  forgetTime?.();
+  socket = forgetTime = send = null;
+  pictures.clear();
+  Object.assign(answer, { at_s: 0, ticks: [], pictures: null });
+}
+
+const change = (part) => get().replay && set({ replay: { ...get().replay, ...part } });
+
+function lost(cause) {
+  send = null;
+  change({ status: "lost", cause });
+}
+
+function receive(data, reply) {
+  if (data instanceof Blob) return receivePicture(data);
+  const message = JSON.parse(data);
+  return handlers[message.type]?.(message, reply);
+}
+
+const handlers = {
+  ready({ session }, reply) {
+    send = reply;
+    waiting = false;
+    change({ status: "open", cause: "", session });
+    askAgain();
+  },
+
+  replay({ at_s, ticks, pictures: abouts }) {
+    waiting = false;
+    Object.assign(answer, { at_s, ticks, pictures: abouts });
+    abouts?.forEach(tellOfPicture);
+    for (const listener of answerListeners) listener(answer);
+    ask();
+  },
+
+  problem({ detail }) {
+    waiting = false;
+    say(`The recording cannot be read here: ${detail}`);
+  },
+};
+
+async function receivePicture(blob) {
+  const abouts = answer.pictures;
+  const header = new DataView(await blob.slice(0, HEADER_BYTES).arrayBuffer());
+  const index = header.getUint32(0, true);
+  const image = blob.slice(HEADER_BYTES, blob.size, "image/jpeg");
+  showPicture(index, { image, about: abouts?.[index] ?? null, shown: true });
+}
+
+/** The same time once more: somebody wants to see what was not asked for before. */
+function askAgain() {
+  asked = { ...asked, at_s: null };
+  ask();
+}
+
+function ask() {
+  if (send === null || waiting) return;
+  const at_s = now_s();
+  const frame = pictureListeners.size > 0;
+  if (at_s === asked.at_s && frame === asked.frame) return;
+  const rest = PERIOD_MS - (performance.now() - asked.at);
+  if (rest > 0) {
+    timer ||= setTimeout(() => {
+      timer = 0;
+      ask();
+    }, rest);
+    return;
+  }
+  asked = { at_s, frame, at: performance.now() };
+  waiting = true;
+  send(JSON.stringify({ at_s, frame }));
+}
