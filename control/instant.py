@@ -70,6 +70,4 @@ def snapshot_of(instant: Instant, parts: Parts, vitals: Vitals, timing: TimingLo
 
 
 def _report(telemetry: Telemetry) -> BoardReport:
-    return BoardReport(
-        telemetry.received_at, telemetry.board_time, telemetry.heading, telemetry.elevation
-    )
+    return BoardReport(telemetry.received_at, telemetry.board_time, telemetry.heading, telemetry.elevation)

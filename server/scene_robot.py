@@ -41,7 +41,7 @@ class ShownRobot:
 
 @dataclass(frozen=True, slots=True)
 class Looks:
-    """What tells two robots apart. label: stands beside the robot, "" for none."""
+    """What tells two robots apart. label: stands above the robot, in place of A and B at its ends."""
 
     body: Colour
     path: Colour
@@ -82,10 +82,11 @@ class RobotNodes:
         for end, colour, side in (("A", END_A, 1.0), ("B", END_B, -1.0)):
             at = side * length * (0.5 - 0.5 * CAP)
             scene.add_box(f"{name}/{end}", colour, (width, length * CAP, height), position=(0.0, at, 0.0))
-            above = (0.0, side * length * 0.7, height)
-            scene.add_label(f"{name}/{end}/label", end, position=above, font_size_mode="screen")
+            if not looks.label:
+                above = (0.0, side * length * 0.7, height)
+                scene.add_label(f"{name}/{end}/label", end, position=above, font_size_mode="screen")
         if looks.label:
-            above = (0.0, 0.0, 4.0 * height)
+            above = (0.0, 0.0, 6.0 * height)
             scene.add_label(f"{name}/label", looks.label, position=above, font_size_mode="screen")
 
     def _line(self, name: str, colour: Colour, thickness: float) -> viser.LineSegmentsHandle:

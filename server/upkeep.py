@@ -11,13 +11,16 @@ import asyncio
 import contextlib
 import logging
 import threading
+import time
 from collections.abc import Callable
+from functools import partial
 from typing import TYPE_CHECKING
 
 from control.runs import RunState
 from server.archive import Archive
 from server.catalogue.rebuilding import put_in_order
 from server.catalogue.retention import Policy, prune
+from server.recording.recovery import recover
 from server.streams import StreamEnded
 
 if TYPE_CHECKING:
@@ -31,6 +34,10 @@ WRITTEN_WITHIN = 10.0
 """A recording is whole so soon after its run, s; else the end of the next run is early enough."""
 LEAVING = 1.0
 """At the end, what is nearly done is waited for, s."""
+BREATH = 0.005
+"""After each quarter second of a recording that is mended the rig's thread has the processor, s."""
+TOLD = 3
+"""Mended recordings in one line of the log."""
 MB = 1e6
 
 
@@ -59,12 +66,17 @@ class Upkeep:
             async with self._rig.announcements.subscribe() as messages:
                 await self._do(self._mend)
                 await self._do(lambda: put_in_order(self._archive))
-                await self._do(self._delete_old)
+                if self._has_policy:
+                    await self._do(self._delete_old)
                 while True:
                     message = await messages.get()
-                    if message["type"] == "run" and message["event"] in _ENDS:
-                        id = message["run"]["id"]
-                        await self._do(lambda id=id: self._after(id))
+                    if self._has_policy and message["type"] == "run" and message["event"] in _ENDS:
+                        await self._do(partial(self._delete_old_after, message["run"]["id"]))
+
+    @property
+    def _has_policy(self) -> bool:
+        section = self._rig.settings.recording
+        return section.keep_days > 0.0 or section.keep_GB > 0.0
 
     async def _do(self, work: Callable[[], str]) -> None:
         """One piece of work, and a line of the log for what it has to say, if anything."""
@@ -97,22 +109,17 @@ class Upkeep:
     # The work ------------------------------------------------------------------------------------
 
     def _mend(self) -> str:
-        try:
-            from server.recording.recovery import recover
-        except ImportError:
-            return ""
-        mended = recover(self._archive.folder, self._archive.catalogue)
-        return "; ".join(str(each) for each in mended)
+        done = recover(self._archive.folder, self._archive.catalogue, lambda: time.sleep(BREATH))
+        more = f"; and {len(done) - TOLD} more" if len(done) > TOLD else ""
+        return "; ".join(each.said for each in done[:TOLD]) + more
 
-    def _after(self, id: str) -> str:
+    def _delete_old_after(self, id: str) -> str:
         self._archive.recorder.written(id, WRITTEN_WITHIN)
         return self._delete_old()
 
     def _delete_old(self) -> str:
         """Runs that the rig file says are old enough, or too many."""
         section = self._rig.settings.recording
-        if not (section.keep_days or section.keep_GB):
-            return ""
         gone = prune(self._archive, Policy(keep_days=section.keep_days, keep_GB=section.keep_GB))
         if not gone:
             return ""

@@ -1,4 +1,13 @@
-"""Recordings shown again: a socket that is asked for any instant of one or two of them."""
+"""Recordings shown again: `WS /api/v1/replay?run=ID`, or two with `&run=ID2`, is asked for any instant of them.
+
+It begins with {"type": "ready", "session", "runs": [{"id", "duration_s"}]}; the scene of the session is at
+/scene/?replay=SESSION. To {"at_s": 12.3, "frame": true} (s since the runs' start) it answers {"type": "replay",
+"at_s", "ticks", "pictures"}: a tick for each run with the names of `GET /state`, or null before the first one, and
+where pictures were wanted {"time_s", "captured_s", "new", "tick"} for each run, with the tick that was made of the
+picture. Those that are new follow, each as 8 bytes (number of the run and 0, u32, little endian) and its JPEG. While
+an answer is made only the newest request is kept. What cannot be understood or read is answered by
+{"type": "problem", "detail"}.
+"""
 
 from __future__ import annotations
 
@@ -80,7 +89,7 @@ async def replay(
     replays: TheReplays,
     run: Annotated[list[str], Query(default_factory=list)],
 ) -> None:
-    """An answer for each request, the newest one first; see the README. The session ends with the socket."""
+    """The session ends with the socket. Without a run to show, it is closed with the reason in words."""
     await socket.accept()
     try:
         names, paths = await asyncio.to_thread(recordings, archive, run)

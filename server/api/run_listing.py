@@ -90,8 +90,11 @@ def page_json(rig: Rig, archive: Archive, asked: Asked) -> dict[str, Any]:
 
 
 def _found(rig: Rig, catalogue: Catalogue, session: Sequence[Run], asked: Asked) -> tuple[Page, Totals]:
-    page = catalogue.page(asked.query, asked.cursor, asked.limit)
     known = catalogue.known([run.id for run in session])
+    page = catalogue.page(
+        asked.query, asked.cursor, asked.limit
+    )  # later, so that a new run is in one of the two
+    known |= {run.id for run in page.runs}
     waiting = _matching(rig, [run for run in session if run.id not in known], asked.query)
     return joined(page, waiting, asked.cursor, asked.limit), catalogue.totals()
 

@@ -14,7 +14,7 @@ from sqlalchemy.orm import Session
 from server.catalogue.database import FOR_WRITING, Access
 from server.catalogue.errors import CatalogueError, NoSuchRun
 from server.catalogue.opening import NAME, Opened, opened
-from server.catalogue.queries import next_cursor, number_older, place_at, places
+from server.catalogue.queries import next_cursor, number_of, place_at, places
 from server.catalogue.records import EVERY_RUN, RUNNING, Loose, Page, RunQuery, RunRecord, Totals
 from server.catalogue.rows import assign, record_of, row_of
 from server.catalogue.tables import SHOWN, RunRow, SettingsRow
@@ -124,9 +124,12 @@ class Catalogue:
         after = None if cursor is None else place_at(cursor)
         with self._reading() as session:
             found = session.execute(places(query, after, limit + 1)).all()
-            total = after.total if after is not None else len(found)
-            if after is None and len(found) > limit:
-                total += session.scalar(number_older(query, *found[-1])) or 0
+            if after is not None:
+                total = after.total
+            elif len(found) <= limit:
+                total = len(found)
+            else:
+                total = session.scalar(number_of(query, found)) or 0
             runs = _records(session, [id for _, id in found[:limit]])
         return Page(tuple(runs), next_cursor(runs, total) if len(found) > limit else None, total)
 
@@ -159,12 +162,11 @@ class Catalogue:
             return [Loose(*found) for found in session.execute(wanted.order_by(RunRow.started_at, RunRow.id))]
 
     def totals(self) -> Totals:
-        of_pinned = select(RunRow.pinned, func.count(), func.sum(RunRow.size_bytes))
+        of_all = select(func.count(), func.sum(RunRow.size_bytes)).where(SHOWN)
+        of_pinned = select(func.sum(RunRow.size_bytes)).where(SHOWN, RunRow.pinned.is_(True))
         with self._reading() as session:
-            found = session.execute(of_pinned.where(SHOWN).group_by(RunRow.pinned)).all()
-        sizes = {pinned: (runs, size) for pinned, runs, size in found}
-        (loose, loose_size), (pinned, pinned_size) = sizes.get(False, (0, 0)), sizes.get(True, (0, 0))
-        return Totals(loose + pinned, loose_size + pinned_size, pinned_size)
+            runs, size = session.execute(of_all).one()
+            return Totals(runs, size or 0, session.scalar(of_pinned) or 0)
 
     # Access --------------------------------------------------------------------------------------
 

@@ -9,10 +9,10 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 
-from sqlalchemy import ColumnElement, Select, func, select, tuple_
+from sqlalchemy import ColumnElement, Row, Select, func, select, tuple_
 
 from server.catalogue.errors import BadCursor
-from server.catalogue.records import Page, RunQuery, RunRecord
+from server.catalogue.records import EVERY_RUN, Page, RunQuery, RunRecord
 from server.catalogue.searching import EQUAL, FLAGS, line_of, searched
 from server.catalogue.tables import SHOWN, RunRow
 
@@ -100,10 +100,13 @@ def places(query: RunQuery, after: Place | None, limit: int) -> Select[datetime,
     return wanted.order_by(RunRow.started_at.desc(), RunRow.id.desc()).limit(limit)
 
 
-def number_older(query: RunQuery, started_at: datetime, id: str) -> Select[int]:
-    """How many runs there are beyond a place; with the runs before it, every run is looked at once."""
-    wanted = conditions(query)
-    return select(func.count()).select_from(RunRow).where(*wanted, older_than(started_at, id))
+def number_of(query: RunQuery, found: Sequence[Row[datetime, str]]) -> Select[int]:
+    """How many runs there are. found: the first of them, which need not be looked for again."""
+    if query == EVERY_RUN:
+        return select(func.count()).select_from(RunRow).where(SHOWN)
+    started_at, id = found[-1]
+    older = select(len(found) + func.count()).select_from(RunRow)
+    return older.where(*conditions(query), older_than(started_at, id))
 
 
 def older_than(started_at: datetime, id: str) -> ColumnElement[bool]:

@@ -24,20 +24,19 @@ Watch = Callable[[int, int], None]
 class Rebuilt:
     """added: runs that were not in the catalogue.  renewed: read once more.  lost: whose recording is gone.
 
-    unreadable: what could not be read, in words.
+    told: what was mended and what cannot be read, in words.
     """
 
     added: int = 0
     renewed: int = 0
     lost: int = 0
-    unreadable: list[str] = field(default_factory=list)
+    told: list[str] = field(default_factory=list)
 
 
 def rebuild(shelf: Shelf, watch: Watch = lambda _read, _all: None) -> Rebuilt:
     """What a person has written about a run stays. Raises `CatalogueError`."""
     finish_deletions(shelf)
-    recover(shelf.folder, shelf.catalogue)
-    done = Rebuilt()
+    done = Rebuilt(told=[str(each) for each in recover(shelf.folder, shelf.catalogue)])
     paths = sorted(shelf.folder.glob(f"*{RECORDING}"))
     for read, path in enumerate(paths, start=1):
         _take(shelf, path, done)
@@ -56,7 +55,7 @@ def _take(shelf: Shelf, path: Path, done: Rebuilt) -> None:
     try:
         found = _record_in(path)
     except Unreadable as error:
-        done.unreadable.append(str(error))
+        done.told.append(str(error))
         return
     shelf.catalogue.put(replace(found, **_written(shelf, found.id, known)))
     if known is None:
@@ -105,5 +104,4 @@ def put_in_order(shelf: Shelf) -> str:
         if broken is None
         else f"the catalogue of runs was damaged (kept as {broken.name})"
     )
-    unread = f"; {len(done.unreadable)} recordings could not be read" if done.unreadable else ""
-    return f"{why}: it was made anew from {done.added + done.renewed} recordings{unread}"
+    return "; ".join((f"{why}: it was made anew from {done.added + done.renewed} recordings", *done.told))

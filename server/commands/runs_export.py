@@ -6,7 +6,6 @@ import contextlib
 import json
 import os
 from collections.abc import Iterator
-from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
 
@@ -15,11 +14,8 @@ from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, T
 
 from server.commands.outcome import FAILED, USAGE, DataOption, console, fail
 from server.commands.run_choice import RunArgument, recording_of, records_of
-from server.exports.formats import FORMATS, ExportError, Job, Watch, export_file
+from server.exports.formats import FORMATS, ExportError, FormatName, Job, Watch, export_file
 from server.exports.naming import file_name
-
-Wanted = StrEnum("Wanted", {name: name for name in FORMATS})
-"""The formats, as the command line offers them."""
 
 
 @contextlib.contextmanager
@@ -61,7 +57,7 @@ def _check_free(place: Path, force: bool) -> None:
 def export(
     id: RunArgument,
     formats: Annotated[
-        list[Wanted] | None, typer.Option("--format", help="May be given again, for several files.")
+        list[FormatName] | None, typer.Option("--format", help="May be given again, for several files.")
     ] = None,
     overlay: Annotated[
         bool, typer.Option("--overlay", help="Draw into the film (mp4) what the rig knew.")
@@ -83,7 +79,7 @@ def export(
             FAILED,
         )
     path = recording_of(record, data)
-    wanted = dict.fromkeys(formats or [Wanted.csv])
+    wanted = dict.fromkeys(formats or [FormatName.CSV])
     files: list[dict[str, object]] = []
     for format in wanted:
         name = file_name(record.id, record.label, FORMATS[format].suffix)

@@ -30,8 +30,8 @@ def rebuild(data: DataOption = None, as_json: JsonOption = False) -> None:
         print(json.dumps(asdict(done)))
         return
     print(f"{done.added} runs added, {done.renewed} renewed, {done.lost} without their recording")
-    for problem in done.unreadable:
-        typer.echo(f"pivotrig: {problem}", err=True)
+    for line in done.told:
+        typer.echo(line, err=True)
 
 
 def recover(data: DataOption = None, as_json: JsonOption = False) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from enum import StrEnum
 from importlib import import_module
 from pathlib import Path
 from typing import BinaryIO
@@ -13,6 +14,10 @@ from server.recording.reading import Recording, Unreadable
 
 Watch = Callable[[float], None]
 """Told how far an export has come, 0 to 1."""
+
+
+IMPOSSIBLE = 3
+"""Exit status of an export that has said in words why it cannot be made."""
 
 
 class ExportError(Exception):
@@ -40,14 +45,26 @@ class Format:
     module: str
 
 
-FORMATS = {
-    "csv": Format(".csv", "text/csv; charset=utf-8", "server.exports.csv_table"),
-    "parquet": Format(".parquet", "application/vnd.apache.parquet", "server.exports.parquet_table"),
-    "mat": Format(".mat", "application/x-matlab-data", "server.exports.mat_table"),
-    "mcap": Format(".mcap", "application/octet-stream", "server.exports.whole_file"),
-    "png": Format(".png", "image/png", "server.exports.run_figure"),
-    "svg": Format(".svg", "image/svg+xml", "server.exports.run_figure"),
-    "mp4": Format(".mp4", "video/mp4", "server.exports.run_film"),
+class FormatName(StrEnum):
+    """As the command line has them."""
+
+    CSV = "csv"
+    PARQUET = "parquet"
+    MAT = "mat"
+    MCAP = "mcap"
+    PNG = "png"
+    SVG = "svg"
+    MP4 = "mp4"
+
+
+FORMATS: dict[str, Format] = {
+    FormatName.CSV: Format(".csv", "text/csv; charset=utf-8", "server.exports.csv_table"),
+    FormatName.PARQUET: Format(".parquet", "application/vnd.apache.parquet", "server.exports.parquet_table"),
+    FormatName.MAT: Format(".mat", "application/x-matlab-data", "server.exports.mat_table"),
+    FormatName.MCAP: Format(".mcap", "application/octet-stream", "server.exports.whole_file"),
+    FormatName.PNG: Format(".png", "image/png", "server.exports.run_figure"),
+    FormatName.SVG: Format(".svg", "image/svg+xml", "server.exports.run_figure"),
+    FormatName.MP4: Format(".mp4", "video/mp4", "server.exports.run_film"),
 }
 
 
@@ -79,7 +96,7 @@ def export_file(job: Job, place: Path, watch: Watch = unwatched) -> None:
 
     Raises like `export`.
     """
-    if job.format == "mp4":
+    if job.format == FormatName.MP4:
         _film_file(job, place, watch)
         return
     with open(place, "xb") as sink:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from control.model import PIVOT_A, PIVOT_B
 from server.exports.columns import named
-from server.exports.formats import Job, Watch
+from server.exports.formats import FormatName, Job, Watch
 from server.exports.table import batches
 from server.recording.reading import Recording
 from server.reports.drawing import BLACK, BLUE, GREEN, ORANGE, PURPLE, label, plain, png, svg
@@ -80,7 +80,7 @@ class About:
 
 def write(recording: Recording, sink: BinaryIO, job: Job, watch: Watch) -> None:
     figure = drawn(walked(recording, watch), About.of(recording))
-    sink.write(svg(figure) if job.format == "svg" else png(figure))
+    sink.write(svg(figure) if job.format == FormatName.SVG else png(figure))
 
 
 def walked(recording: Recording, watch: Watch) -> Walked:

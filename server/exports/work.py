@@ -10,12 +10,10 @@ from asyncio.subprocess import DEVNULL, PIPE, Process
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 
-from server.exports.formats import ExportError, Job
+from server.exports.formats import IMPOSSIBLE, ExportError, Job
 
 log = logging.getLogger(__name__)
 
-IMPOSSIBLE = 3
-"""Exit status of an export that has said in words why it cannot be made."""
 PIECE = 1 << 16
 """Bytes passed on at once."""
 LAST_WORDS = 2000

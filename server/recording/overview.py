@@ -66,8 +66,14 @@ class Overview:
             self._newest = time, point
         self._ticks += 1
         if len(self._points) > self._most - 1:
-            del self._points[1::2]
-            self._stride *= 2
+            self._thin_out()
+
+    def _thin_out(self) -> None:
+        time, newest = self._points[-1]
+        del self._points[1::2]
+        self._stride *= 2
+        if self._points[-1][0] != time:
+            self._newest = time, lambda: newest
 
     def as_json(self) -> dict[str, list[float | None]]:
         """time_s and the series, all of one length."""

@@ -41,7 +41,7 @@ MEGA = 1_000_000
 
 
 class Session:
-    """One run. failure: "" or why its recording has ended, in words.  finished: set when the file is closed."""
+    """One run. failure: "" or why its recording has ended, in words.  finished: set when the file is closed and listed."""
 
     def __init__(
         self, run: Run, conditions: Conditions, catalogue: Catalogue, folder: Path, disk: Disk
@@ -149,12 +149,12 @@ class Session:
 
     def finish(self) -> None:
         """The end of the file; afterwards it is whole, or as whole as the disk allows."""
-        self._wait_for_pictures()
         try:
+            self._wait_for_pictures()
             complete = self._close_file()
+            self._tell_catalogue(lambda: self._note_file(complete))
         finally:
             self.finished.set()
-        self._tell_catalogue(lambda: self._note_file(complete))
 
     def give_up(self, why: str) -> None:
         """End the recording, keeping what is readable. From any thread."""

@@ -68,4 +68,6 @@ def shown(messages: Tick) -> dict[str, Any]:
     try:
         return as_tick(messages)
     except (KeyError, TypeError, ValueError, AttributeError) as error:
-        raise Unreadable(f"a tick of the recording is not as this pivotrig writes them ({error!r})") from error
+        raise Unreadable(
+            f"a tick of the recording is not as this pivotrig writes them ({error!r})"
+        ) from error

@@ -112,7 +112,6 @@ def film_at(player: Player, at: float) -> Film | None:
 
 
 def looks_of(names: Sequence[str]) -> list[Looks]:
-    """One robot needs no name; two have theirs beside them."""
-    if len(names) == 1:
-        return [LOOKS[0]]
-    return [replace(looks, label=name) for looks, name in zip(LOOKS, names, strict=True)]
+    """The first run looks as the rig does; the one that it is compared with has its name beside it."""
+    first, other = LOOKS
+    return [first, *(replace(other, label=name) for name in names[1:])]

@@ -6,10 +6,11 @@ Recorded is every camera frame (60 Hz, 640x480), six times as many as by default
 from __future__ import annotations
 
 import asyncio
-import os
+import math
 import sys
 import tempfile
 import threading
+import time
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -34,8 +35,7 @@ ENCODER = "encoder"
 """In the name of the thread that makes JPEG of the frames."""
 RECORDER = "record"
 """In the names of all of the recorder's threads."""
-WALK = Selection(Choice("geometric"), Choice("eight"), Gait(sweep=np.radians(10.0)))
-TICKS_PER_SECOND = os.sysconf("SC_CLK_TCK")
+WALK = Selection(Choice("geometric"), Choice("eight"), Gait(sweep=math.radians(10.0)))
 
 
 @dataclass(slots=True)
@@ -58,7 +58,9 @@ class Side:
 
 
 def report(rounds: int = ROUNDS, block: float = BLOCK) -> None:
-    print(f"\nrecording every frame of 640x480 at {RATE:.0f} Hz, on and off in turns, {rounds} x {block:.0f} s each")
+    print(
+        f"\nrecording every frame of 640x480 at {RATE:.0f} Hz, on and off in turns, {rounds} x {block:.0f} s each"
+    )
     on, off = asyncio.run(measure(rounds, block))
     print(f"{'':12} {'latency p50':>12} {'latency p99':>12} {'ticks':>8}")
     for name, side in (("not recorded", off), ("recorded", on)):
@@ -89,7 +91,7 @@ async def _in_turns(folder: Path, rounds: int, block: float) -> tuple[Side, Side
     try:
         for _ in range(rounds):
             for side, enabled in ((on, True), (off, False)):
-                await _block(rig, side, enabled=enabled, duration=block)
+                await _block(rig, archive, side, enabled=enabled, duration=block)
     finally:
         await rig.stop()
         archive.close()
@@ -101,10 +103,10 @@ def _settings(*, enabled: bool) -> RigFile:
     return RigFile.model_validate({"recording": recording})
 
 
-async def _block(rig: Rig, side: Side, *, enabled: bool, duration: float) -> None:
+async def _block(rig: Rig, archive: Archive, side: Side, *, enabled: bool, duration: float) -> None:
     """One run; its ticks, and what the recorder's threads worked meanwhile."""
     rig.machine.settings = _settings(enabled=enabled)
-    await _walk(rig)
+    run = await _walk(rig)
     await asyncio.sleep(SETTLING)
     kept = rig.machine.loop._timing._latencies
     kept.clear()
@@ -114,26 +116,24 @@ async def _block(rig: Rig, side: Side, *, enabled: bool, duration: float) -> Non
     side.latencies += kept
     side.shares.append(worked)
     await rig.disarm()
-    if enabled:
-        assert await asyncio.to_thread(rig_written, rig)
+    await asyncio.to_thread(archive.recorder.written, run, 10.0)
 
 
-async def _walk(rig: Rig) -> None:
+async def _walk(rig: Rig) -> str:
+    """Start a run that does not end by itself; its id."""
     while rig.snapshot.faults or rig.snapshot.pose is None or rig.snapshot.rig is not RigState.DISARMED:
         await asyncio.sleep(0.05)
     await rig.arm()
     await asyncio.sleep(0.5)
-    await rig.start_run(RunRequest(WALK, passes=1000.0))
+    return (await rig.start_run(RunRequest(WALK, passes=1000.0))).id
 
 
 def _worked() -> dict[str, float]:
     """Processor time of each of the recorder's threads, s."""
     threads = [thread for thread in threading.enumerate() if RECORDER in thread.name]
-    return {thread.name: _seconds(thread.native_id) for thread in threads}
+    return {thread.name: _seconds(thread) for thread in threads}
 
 
-def _seconds(number: int | None) -> float:
-    """User and system time of a thread (proc(5): fields 14 and 15, the name in brackets may hold anything)."""
-    text = Path(f"/proc/self/task/{number}/stat").read_text(encoding="ascii", errors="replace")
-    values = text.rpartition(")")[2].split()
-    return (int(values[11]) + int(values[12])) / TICKS_PER_SECOND
+def _seconds(thread: threading.Thread) -> float:
+    assert thread.ident is not None
+    return time.clock_gettime(time.pthread_getcpuclockid(thread.ident))

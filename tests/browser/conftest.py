@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import re
 import shutil
 from collections.abc import Iterator
 from pathlib import Path
@@ -13,6 +14,8 @@ from playwright.sync_api import Browser, expect, sync_playwright
 
 CHROMIUM_ARGS = ("--no-sandbox", "--use-angle=gl-egl", "--ignore-gpu-blocklist", "--disable-gpu-compositing")
 """WebGL in software for the scene; without a graphics card, composing the page itself is cheaper without it."""
+
+SCENE_PAGE = re.compile(r"^https?://[^/]+/scene/")
 
 expect.set_options(timeout=PATIENCE * 1e3)
 
@@ -56,13 +59,18 @@ def browser() -> Iterator[Browser]:
 
 @pytest.fixture
 def open_tab(browser: Browser) -> Iterator[OpenTab]:
-    """Opens a page of a server in a window of a size; everything is closed afterwards."""
+    """Opens a page of a server in a window of a size; everything is closed afterwards.
+
+    scene: where it is not looked at it may stay empty, since drawing it in software costs more than all the rest.
+    """
     with contextlib.ExitStack() as stack:
 
-        def open_tab(url: str, width: int = 1440, height: int = 900) -> Visit:
+        def open_tab(url: str, width: int = 1440, height: int = 900, *, scene: bool = True) -> Visit:
             context = browser.new_context(viewport={"width": width, "height": height})
             stack.callback(context.close)
             page = context.new_page()
+            if not scene:
+                page.route(SCENE_PAGE, lambda route: route.fulfill(content_type="text/html", body=""))
             page.set_default_timeout(PATIENCE * 1e3)
             visit = Visit(page)
             visit.watch(context)

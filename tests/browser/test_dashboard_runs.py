@@ -97,7 +97,7 @@ def total(page: Page) -> Locator:
 
 def visit_runs(library: Library, open_tab: OpenTab, **size: int) -> Visit:
     library.rig.rest()
-    visit = open_tab(library.rig.url, **size)
+    visit = open_tab(library.rig.url, scene=False, **size)
     expect(names(visit.page).first).to_be_visible()
     return visit
 
@@ -179,6 +179,21 @@ def test_a_run_is_listed_while_it_goes_on_and_started_again(library: Library, op
     button(shown, "Show it").click()
     expect(button(details(page), "Replay")).to_be_enabled()
     assert visit.complaints == []
+
+
+def test_the_bar_says_why_a_run_is_not_recorded_any_more(library: Library, open_tab: OpenTab) -> None:
+    page = visit_runs(library, open_tab).page
+    library.rig.send("POST", "/arm")
+    library.rig.send("POST", "/runs", {"label": "no room"})
+    expect(page.locator(".recording-sign")).to_contain_text("REC")
+    try:
+        library.rig.send("POST", "/simulation/faults", {"name": "disk_full"})
+        expect(page.get_by_role("alert").filter(has_text="Not recorded")).to_be_visible()
+    finally:
+        library.rig.send("DELETE", "/simulation/faults/disk_full")
+    expect(page.get_by_role("row").nth(1)).to_contain_text("aborted")
+    names(page).first.click()
+    expect(details(page)).to_contain_text("its recording has failed")
 
 
 def test_runs_are_compared_deleted_and_pruned_and_stop_stays_in_reach(

@@ -202,3 +202,20 @@ def test_a_slip_is_believed_although_the_moment_of_the_switch_is_not_known_to_th
         estimator.expect(time)
         x = 0.6 * SETTINGS.slip if time >= slip_at else 0.0
         assert estimator.correct(sighting(Pose(x, 0.0, 0.0), time)), f"at {time:.3f} s"
+
+
+def test_the_covariance_that_is_carried_is_the_predicted_one() -> None:
+    """To now, as the filter itself would be predicted there: F P F' + Q."""
+    stroll = Stroll(5)
+    for index in range(120):
+        stroll.step()
+        if index > 3:
+            stroll.look()
+            carried = stroll.estimator.carry(stroll.now)
+            xx, xy, xh, yy, yh, hh = carried.covariance
+            assert carried.sigma == pytest.approx([math.sqrt(each) for each in (xx, yy, hh)])
+            assert np.linalg.eigvalsh([[xx, xy, xh], [xy, yy, yh], [xh, yh, hh]]).min() > 0.0
+    captured = list(stroll.truth)[-1]
+    stroll.estimator.expect(captured)
+    (xx, xy, xh), (_, yy, yh), (_, _, hh) = stroll.estimator.covariance
+    assert carried.covariance == pytest.approx((xx, xy, xh, yy, yh, hh), rel=1e-12, abs=1e-20)

@@ -77,6 +77,7 @@ def many(data: Path, runs: int) -> Catalogue:
     Catalogue.open(data).close()
     columns = [column.name for column in RunRow.__table__.columns]
     database = sqlite3.connect(data / NAME)
+    database.execute("PRAGMA synchronous = OFF")
     with database:
         database.executemany(
             f"INSERT INTO runs VALUES ({', '.join(f':{name}' for name in columns)})", rows(runs, columns)

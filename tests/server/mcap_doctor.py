@@ -130,8 +130,8 @@ def _check_statistics(
     assert statistics.chunk_count == len(chunks)
     assert statistics.attachment_count == len(_all(body, Attachment))
     assert statistics.metadata_count == len(_all(body, Metadata))
-    assert statistics.message_start_time == min(chunk.message_start_time for chunk in chunks)
-    assert statistics.message_end_time == max(chunk.message_end_time for chunk in chunks)
+    assert statistics.message_start_time == min((chunk.message_start_time for chunk in chunks), default=0)
+    assert statistics.message_end_time == max((chunk.message_end_time for chunk in chunks), default=0)
 
 
 def _check_indexes(

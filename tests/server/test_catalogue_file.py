@@ -74,7 +74,7 @@ def test_a_newer_catalogue_is_refused_and_left_alone(tmp_path: Path) -> None:
     with closing(sqlite3.connect(tmp_path / NAME)) as database, database:
         database.execute("UPDATE alembic_version SET version_num = '9999'")
     before = (tmp_path / NAME).read_bytes()
-    with pytest.raises(CatalogueError, match="written by a newer pivotrig .*'9999'.*update pivotrig"):
+    with pytest.raises(CatalogueError, match=r"written by a newer pivotrig .*'9999'.*update pivotrig"):
         Catalogue.open(tmp_path)
     assert (tmp_path / NAME).read_bytes() == before
 
@@ -200,7 +200,7 @@ def test_where_no_catalogue_can_be_made_there_are_no_runs(foreign: Path) -> None
 
 def test_a_data_folder_that_is_a_file_is_named(tmp_path: Path) -> None:
     (tmp_path / "data").write_text("no folder")
-    with pytest.raises(CatalogueError, match="the data folder .*data cannot be used"):
+    with pytest.raises(CatalogueError, match=r"the data folder .*data cannot be used"):
         Catalogue.open(tmp_path / "data")
 
 

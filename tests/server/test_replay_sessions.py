@@ -2,6 +2,7 @@ import asyncio
 import contextlib
 import json
 import struct
+import time
 
 import httpx
 import msgspec
@@ -237,8 +238,12 @@ async def test_a_replay_has_a_scene_of_its_own_with_both_robots(there):
         for name, tick in zip(("/robot", "/compared/1/robot"), answer["ticks"], strict=True):
             pose = tick["pose"]
             assert places[name][:2] == pytest.approx([pose["x_mm"] / 10, pose["y_mm"] / 10], abs=0.25)
-        labels = {m["props"]["text"] for m in found if m["type"] == "LabelMessage"}
-        assert {"first", "second"} <= labels
+        labels = [m["props"]["text"] for m in found if m["type"] == "LabelMessage"]
+        assert sorted(label for label in labels if label in ("A", "B", "first", "second")) == [
+            "A",
+            "B",
+            "second",
+        ]
         port = sessions_of(there).find(session)._scene.scene.port
         assert port != live.scene.port
         assert live.bridge.viewers == 0
@@ -269,6 +274,35 @@ async def test_the_page_of_a_replays_scene_stands_beside_its_socket(there):
         assert (await client.get("/scene/", params={"replay": "gone"})).status_code == 404
         with pytest.raises(Exception, match="403"):
             await viewer_of(there, "gone")
+
+
+async def test_a_server_that_ends_takes_its_replays_with_it(walked, serve):
+    data, _ = walked
+    async with serve(create_app(Rig(build_machine(RigFile(), realtime=True)), Archive.open(data))) as there:
+        socket = await there.socket("/api/v1/replay?run=one", max_size=None)
+        page = Page(socket)
+        session = (await page.told())["session"]
+        viewer = await viewer_of(there, session)
+        await viewer.recv()
+        replays, began = sessions_of(there), time.monotonic()
+    assert time.monotonic() - began < 5.0
+    assert len(replays) == 0
+    with pytest.raises(ConnectionClosed) as ended:
+        await socket.recv()
+    assert ended.value.rcvd.code == 1012
+    await viewer.close()
+
+
+async def test_a_recording_that_is_deleted_meanwhile_is_played_to_its_end(there, walked):
+    data, _ = walked
+    path = data / "recordings" / "two.mcap"
+    async with replay(there, "two") as page:
+        content = path.read_bytes()
+        path.unlink()
+        try:
+            assert (await page.ask(1.5))["ticks"][0]["run"]["id"] == "two"
+        finally:
+            path.write_bytes(content)
 
 
 # At a glance -------------------------------------------------------------------------------------

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import contextlib
 import random
+import struct
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
+import zstandard
+from mcap.exceptions import McapError
+from mcap.reader import NonSeekingReader
 from mcap_doctor import placed
 from recordings_bench import RecordingsBench, Walk
 
@@ -41,6 +46,23 @@ def newest_tick(path: Path) -> dict | None:
             return recording.tick_at(recording.duration)
     except Unreadable:
         return None
+
+
+def ticks_by_public_reader(path: Path) -> int:
+    """As somebody without pivotrig reads a torn file: from its beginning, until the reader says that it is over."""
+    return _count(path, "/state")
+
+
+def frames_by_public_reader(path: Path) -> int:
+    return _count(path, "/camera")
+
+
+def _count(path: Path, topic: str) -> int:
+    found = 0
+    with path.open("rb") as file, contextlib.suppress(McapError, struct.error, zstandard.ZstdError):
+        for _ in NonSeekingReader(file).iter_messages(topic, log_time_order=False):
+            found += 1
+    return found
 
 
 def _ask(recording: Recording) -> None:

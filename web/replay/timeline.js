@@ -8,7 +8,7 @@ import { clock } from "../units.js";
 
 /** A drag shorter than this is a click, CSS px. */
 const CLICK_PX = 4;
-/** Values of a run may stand that many places before the cursor's: another run's times lie between, */
+/** Values of a run may stand that many places before the cursor's: another run's times lie between. */
 const REACH = 8;
 
 /**
@@ -17,6 +17,7 @@ const REACH = 8;
  */
 export function wholeRun(runs) {
   const listeners = new Set();
+  const pointed = new Set();
   return {
     columns: (curves) => columnsOf(runs, curves),
     range: () => shownRange(),
@@ -26,9 +27,16 @@ export function wholeRun(runs) {
       return () => listeners.delete(listener);
     },
     changed: () => listeners.forEach((listener) => listener()),
-    onTime: onTextTime,
+    onTime(listener) {
+      pointed.add(listener);
+      const forget = onTextTime(listener);
+      return () => {
+        pointed.delete(listener);
+        forget();
+      };
+    },
     timeAxis: { values: (_, splits) => splits.map(splits.every(Number.isInteger) ? clock : stamp) },
-    attach,
+    attach: (plot) => attach(plot, () => pointed.forEach((listener) => listener())),
   };
 }
 
@@ -53,7 +61,7 @@ function lastBefore(values, index) {
 }
 
 /** The line at the time of the replay; a click goes to a time, a drag looks closer, a double click sees all again. */
-function attach(plot) {
+function attach(plot, tellPointed) {
   const line = plot.over.appendChild(document.createElement("div"));
   line.className = "chart-time";
   const place = () => {
@@ -62,41 +70,38 @@ function attach(plot) {
     line.hidden = !(from <= time && time <= to);
     line.style.transform = `translateX(${plot.valToPos(time, "x")}px)`;
   };
+  // uPlot draws what is being selected; what becomes of it is decided here.
   plot.cursor.drag.x = true;
   plot.cursor.drag.setScale = false;
-  plot.hooks.setSelect = [zoomToSelected];
+  plot.hooks.setSelect = [forgetSelection];
   plot.hooks.setScale = [place];
   plot.hooks.setSize = [place];
-  const clicks = hearClicks(plot);
+  plot.hooks.setCursor = [tellPointed];
+  const forgetPointer = hearPointer(plot);
   const forget = onTime(place);
   place();
   return () => {
     forget();
-    clicks();
+    forgetPointer();
   };
 }
 
-function zoomToSelected(plot) {
-  const { left, width } = plot.select;
-  if (width < CLICK_PX) return;
-  plot.setSelect({ left: 0, top: 0, width: 0, height: 0 }, false);
-  zoomTo(plot.posToVal(left, "x"), plot.posToVal(left + width, "x"));
-}
+const forgetSelection = (plot) => plot.setSelect({ left: 0, top: 0, width: 0, height: 0 }, false);
 
-/** The chart that is pressed in; those that only follow its cursor stay as they are. */
-function hearClicks(plot) {
-  let pressed = null;
-  const press = (event) => void (pressed = event.clientX);
-  const click = (event) => {
-    if (pressed === null || Math.abs(event.clientX - pressed) >= CLICK_PX) return;
-    seek(plot.posToVal(event.clientX - plot.over.getBoundingClientRect().left, "x"));
+/** Of the chart that is pressed in; those that only follow its cursor stay as they are. */
+function hearPointer(plot) {
+  let from = null;
+  const timeAt = (x) => plot.posToVal(x - plot.over.getBoundingClientRect().left, "x");
+  const press = (event) => void (from = event.button === 0 ? event.clientX : null);
+  const release = (event) => {
+    if (from === null) return;
+    const [left, right] = [from, event.clientX].sort((one, other) => one - other);
+    from = null;
+    if (right - left < CLICK_PX) seek(timeAt(left));
+    else if (event.pointerType !== "touch") zoomTo(timeAt(left), timeAt(right));
   };
-  plot.over.addEventListener("pointerdown", press);
-  plot.over.addEventListener("click", click);
-  plot.over.addEventListener("dblclick", zoomOut);
-  return () => {
-    plot.over.removeEventListener("pointerdown", press);
-    plot.over.removeEventListener("click", click);
-    plot.over.removeEventListener("dblclick", zoomOut);
-  };
+  const cancel = () => void (from = null);
+  const heard = [[plot.over, "pointerdown", press], [plot.over, "dblclick", zoomOut], [document, "pointerup", release], [document, "pointercancel", cancel]];
+  for (const [target, name, listener] of heard) target.addEventListener(name, listener);
+  return () => heard.forEach(([target, name, listener]) => target.removeEventListener(name, listener));
 }

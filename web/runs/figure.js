@@ -13,12 +13,15 @@ export function Figure({ run }) {
     return () => clearTimeout(timer);
   }, []);
   if (!there) return null;
+  const address = `/api/v1/runs/${encodeURIComponent(run.id)}/plot.png`;
   const words = { drawing: "Drawing the figure…", failed: "The figure could not be drawn." }[standing];
   return html`
     <figure class="run-figure" data-standing=${standing}>
       ${words && html`<p class="hint">${words}</p>`}
-      ${wanted && standing !== "failed" && html`<img src=${`/api/v1/runs/${encodeURIComponent(run.id)}/plot.png`}
-        alt=${`Path, error over time and distribution of the error of ${nameOf(run)}`} onLoad=${() => stand("drawn")} onError=${() => stand("failed")} />`}
+      ${wanted && standing !== "failed" && html`
+        <a href=${address} target="_blank" title="Open the figure by itself">
+          <img src=${address} alt=${`Path, error over time and distribution of the error of ${nameOf(run)}`} onLoad=${() => stand("drawn")} onError=${() => stand("failed")} />
+        </a>`}
     </figure>
   `;
 }

@@ -1,0 +1,251 @@
+"""What a program that was killed leaves behind is made whole again, once, and nothing that can be read is lost."""
+
+import fcntl
+import multiprocessing
+import os
+import signal
+from dataclasses import replace
+
+import pytest
+from mcap.reader import make_reader
+from mcap_doctor import examine, placed
+from recordings_bench import RecordingsBench, Walk
+from torn_files import frames_by_public_reader, read_all, ticks_by_public_reader
+
+from server.archive import Archive
+from server.catalogue.catalogue import Catalogue
+from server.recording.reading import Recording
+from server.recording.recovery import is_being_written, recover
+
+DURATION = 4.0
+RUNNING = {"state": "running", "recording_state": "writing", "metrics": None, "ended_at": None, "frames": 0}
+"""What the catalogue says of a run whose program was killed."""
+
+
+@pytest.fixture(scope="module")
+def recorded(tmp_path_factory):
+    """Data folder and id of a whole recording."""
+    data = tmp_path_factory.mktemp("recorded")
+    id = RecordingsBench().record(data, Walk(duration=DURATION, rate=30.0, frame_rate=5.0, label="first"))
+    return data / "recordings" / f"{id}.mcap"
+
+
+@pytest.fixture
+def archive(tmp_path):
+    archive = Archive.open(tmp_path)
+    yield archive
+    archive.close()
+
+
+@pytest.fixture
+def torn(archive, recorded):
+    """The file as it is when its program is killed after about 3 s, with its row in the catalogue."""
+    path = archive.folder / recorded.name
+    path.write_bytes(recorded.read_bytes()[: recorded.stat().st_size * 3 // 4])
+    with Catalogued(recorded) as record:
+        archive.catalogue.add(replace(record, **RUNNING))
+    return path
+
+
+class Catalogued:
+    """The row of a whole recording."""
+
+    def __init__(self, path):
+        self._catalogue = Catalogue.open(path.parent.parent)
+        self._id = path.stem
+
+    def __enter__(self):
+        return self._catalogue.get(self._id)
+
+    def __exit__(self, *_):
+        self._catalogue.close()
+
+
+def test_a_torn_recording_becomes_whole_with_every_tick_that_it_had(archive, torn):
+    before = read_all(torn)
+    (done,) = recover(archive.folder, archive.catalogue)
+    assert done.is_recovered
+    assert torn.stem in str(done)
+    with Recording.open(torn) as recording:
+        assert recording.is_whole
+        assert recording.is_recovered
+        assert list(recording.ticks()) == before
+    assert examine(torn).message_count > len(before) > 60
+
+
+def test_the_public_reader_reads_a_torn_recording_as_it_is_and_seeks_in_a_recovered_one(archive, torn):
+    ticks = len(read_all(torn))
+    assert ticks_by_public_reader(torn) == ticks
+    recover(archive.folder, archive.catalogue)
+    with torn.open("rb") as file:
+        reader = make_reader(file, validate_crcs=True)
+        assert reader.get_summary().statistics.chunk_count > 8
+        assert sum(1 for _ in reader.iter_messages("/state")) == ticks
+
+
+def test_the_run_is_listed_as_interrupted_with_the_figures_of_what_was_walked(archive, torn, recorded):
+    recover(archive.folder, archive.catalogue)
+    record = archive.catalogue.get(torn.stem)
+    assert (record.state, record.recording_state) == ("interrupted", "recovered")
+    assert record.size_bytes == torn.stat().st_size
+    assert record.frames == frames_by_public_reader(torn) > 10
+    assert len(record.sparkline) == 60
+    with Recording.open(torn) as recording, Recording.open(recorded) as whole:
+        last = recording.tick_at(recording.duration)["/state"]["run"]
+        assert recording.outcome["metrics"] == record.metrics
+        assert set(record.metrics) == set(whole.outcome["metrics"])
+        assert set(recording.overview) == set(whole.overview)
+    assert record.metrics["mean_error_mm"] == pytest.approx(last["mean_error_mm"], abs=1e-6)
+    assert record.metrics["duration_s"] == pytest.approx(last["elapsed_s"], abs=1e-3)
+    assert record.metrics["steps"] == last["steps"]
+
+
+def test_figures_counted_again_from_the_ticks_are_those_of_the_run(archive, recorded):
+    """Only the end was lost: nobody knows the outcome, but every tick of the run is there."""
+    path = archive.folder / recorded.name
+    outcome = next(at for at, _, record in placed(recorded) if getattr(record, "name", "") == "overview.json")
+    path.write_bytes(recorded.read_bytes()[:outcome])
+    recover(archive.folder, archive.catalogue)
+    with Recording.open(path) as recording, Recording.open(recorded) as whole:
+        assert recording.outcome["metrics"] == pytest.approx(whole.outcome["metrics"], abs=2e-6)
+        for name, series in whole.overview.items():
+            assert recording.overview[name] == pytest.approx(series, abs=1e-9)
+
+
+def test_a_run_that_had_ended_keeps_its_outcome(archive, torn, recorded):
+    with Catalogued(recorded) as record:
+        archive.catalogue.put(replace(record, recording_state="writing"))
+    recover(archive.folder, archive.catalogue)
+    found = archive.catalogue.get(torn.stem)
+    assert (found.state, found.metrics, found.ended_at) == ("finished", record.metrics, record.ended_at)
+    with Recording.open(torn) as recording:
+        assert recording.outcome["state"] == "finished"
+
+
+def test_a_recording_that_the_catalogue_does_not_know_is_added_to_it(archive, torn, recorded):
+    archive.catalogue.delete(torn.stem)
+    recover(archive.folder, archive.catalogue)
+    record = archive.catalogue.get(torn.stem)
+    with Catalogued(recorded) as known:
+        assert (record.label, record.controller, record.selection) == ("first", "geometric", known.selection)
+        assert record.started_at == known.started_at
+
+
+def test_recovering_again_changes_nothing(archive, torn):
+    recover(archive.folder, archive.catalogue)
+    data, record = torn.read_bytes(), archive.catalogue.get(torn.stem)
+    assert recover(archive.folder, archive.catalogue) == []
+    assert torn.read_bytes() == data
+    assert archive.catalogue.get(torn.stem) == record
+    assert [path.name for path in archive.folder.iterdir()] == [torn.name]
+
+
+def test_a_file_that_somebody_writes_is_left_alone(archive, torn):
+    data = torn.read_bytes()
+    with torn.open("rb") as writer:
+        fcntl.flock(writer, fcntl.LOCK_EX)
+        assert is_being_written(torn)
+        assert recover(archive.folder, archive.catalogue) == []
+    assert torn.read_bytes() == data
+    assert archive.catalogue.get(torn.stem).state == "running"
+
+
+def test_a_file_of_which_nothing_can_be_read_is_kept_under_another_name(archive, torn):
+    torn.write_bytes(torn.read_bytes()[:400])
+    (done,) = recover(archive.folder, archive.catalogue)
+    assert not done.is_recovered
+    kept = torn.with_name(f"{torn.name}.torn")
+    assert str(kept) in str(done)
+    assert kept.stat().st_size == 400
+    assert not torn.exists()
+    record = archive.catalogue.get(torn.stem)
+    assert (record.state, record.recording_state) == ("interrupted", "lost")
+
+
+def test_a_damaged_piece_is_left_out_and_said(archive, torn):
+    ticks = len(read_all(torn))
+    with torn.open("r+b") as file:
+        file.seek(torn.stat().st_size // 2)
+        file.write(bytes(64))
+    (done,) = recover(archive.folder, archive.catalogue)
+    assert "damaged" in str(done)
+    assert ticks - 10 <= len(read_all(torn)) < ticks
+    examine_but_for_sequence(torn)
+
+
+def examine_but_for_sequence(path):
+    """All that a doctor asks for; only the numbering of messages has a gap where a piece is missing."""
+    with path.open("rb") as file:
+        reader = make_reader(file, validate_crcs=True)
+        count = reader.get_summary().statistics.message_count
+        assert sum(1 for _ in reader.iter_messages()) == count
+
+
+def test_rows_of_runs_that_nobody_walks_any_more_are_ended(archive, torn, recorded):
+    torn.unlink()
+    with Catalogued(recorded) as record:
+        archive.catalogue.add(replace(record, **RUNNING | {"id": "no-file", "recording_state": "none"}))
+    done = recover(archive.folder, archive.catalogue)
+    assert {each.id for each in done} == {torn.stem, "no-file"}
+    assert archive.catalogue.get(torn.stem).recording_state == "lost"
+    ended = archive.catalogue.get("no-file")
+    assert (ended.state, ended.recording_state) == ("interrupted", "none")
+
+
+def test_a_whole_recording_that_the_catalogue_takes_for_open_is_listed_as_it_is(archive, torn, recorded):
+    torn.write_bytes(recorded.read_bytes())
+    (done,) = recover(archive.folder, archive.catalogue)
+    assert done.id == torn.stem
+    with Catalogued(recorded) as record:
+        assert archive.catalogue.get(torn.stem) == replace(record, size_bytes=torn.stat().st_size)
+
+
+def test_a_full_disk_leaves_the_torn_file_as_it_is_and_says_so(archive, torn):
+    data = torn.read_bytes()
+    assert _in_child(_recover_with_little_room, torn) == 0
+    assert torn.read_bytes() == data
+    assert [path.name for path in archive.folder.iterdir()] == [torn.name]
+    assert recover(archive.folder, archive.catalogue)[0].is_recovered
+
+
+def _recover_with_little_room(torn):
+    """A file may have half of the size that it needs."""
+    import resource
+
+    signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (torn.stat().st_size // 2,) * 2)
+    catalogue = Catalogue.open(torn.parent.parent)
+    (done,) = recover(torn.parent, catalogue)
+    catalogue.close()
+    assert not done.is_recovered
+    assert "File too large" in str(done)
+
+
+def test_a_recovery_that_is_killed_at_any_moment_changes_nothing(archive, torn, full):
+    data, ticks = torn.read_bytes(), read_all(torn)
+    for attempt in range(20 if full else 3):
+        torn.write_bytes(data)
+        assert _in_child(_die_at, torn, attempt * 5) == -signal.SIGKILL
+        assert torn.read_bytes() == data
+    recover(archive.folder, archive.catalogue)
+    assert read_all(torn) == ticks
+    assert [path.name for path in archive.folder.iterdir()] == [torn.name]
+
+
+def _die_at(torn, chunk):
+    left = iter(range(chunk))
+
+    def between():
+        if next(left, None) is None:
+            os.kill(os.getpid(), signal.SIGKILL)
+
+    catalogue = Catalogue.open(torn.parent.parent)
+    recover(torn.parent, catalogue, between)
+
+
+def _in_child(work, *arguments):
+    """Exit status of a process of its own that does the work; forked, since importing takes longer than the work."""
+    child = multiprocessing.get_context("fork").Process(target=work, args=arguments)
+    child.start()
+    child.join(60.0)
+    return child.exitcode
