@@ -95,12 +95,13 @@ class Upkeep:
         done: asyncio.Future[str] = loop.create_future()
 
         def run() -> None:
+            result: str | Exception
             try:
-                settle, value = _succeed, work()
+                result = work()
             except Exception as error:  # noqa: BLE001 (it goes to who has asked)
-                settle, value = _fail, error
+                result = error
             with contextlib.suppress(RuntimeError):  # the server has ended meanwhile
-                loop.call_soon_threadsafe(settle, done, value)
+                loop.call_soon_threadsafe(_settle, done, result)
 
         self._thread = threading.Thread(target=run, name="upkeep", daemon=True)
         self._thread.start()
@@ -130,11 +131,10 @@ class Upkeep:
 _ENDS = {state.value for state in RunState if state is not RunState.RUNNING}
 
 
-def _succeed(done: asyncio.Future[str], value: str) -> None:
-    if not done.done():
-        done.set_result(value)
-
-
-def _fail(done: asyncio.Future[str], error: Exception) -> None:
-    if not done.done():
-        done.set_exception(error)
+def _settle(done: asyncio.Future[str], result: str | Exception) -> None:
+    if done.done():
+        return
+    if isinstance(result, Exception):
+        done.set_exception(result)
+    else:
+        done.set_result(result)

@@ -11,11 +11,12 @@ from fastapi import APIRouter, Depends, Request, Response
 from pydantic import Field
 from starlette.responses import FileResponse
 
+from control.runs import RunState
 from server.api.access import TheArchive, TheRig
 from server.api.download import Download
 from server.api.problems import Problem, Rejected
 from server.api.recorded import path_of, record_of
-from server.catalogue.records import RUNNING, RunRecord
+from server.catalogue.records import RunRecord
 from server.exports.formats import FORMATS, Job
 from server.exports.naming import file_name
 
@@ -46,26 +47,28 @@ class Finished:
         }
 
 
-async def finished(run_id: Annotated[str, Field(max_length=80)], archive: TheArchive) -> Finished:
+async def finished(
+    run_id: Annotated[str, Field(max_length=80)], rig: TheRig, archive: TheArchive
+) -> Finished:
     """The recording that is asked for, or the problem with it."""
-    return await asyncio.to_thread(_found, archive, run_id)
+    is_over = any(run.id == run_id and run.state is not RunState.RUNNING for run in rig.runs)
+    return await asyncio.to_thread(_found, archive, run_id, is_over)
 
 
 TheFinished = Annotated[Finished, Depends(finished)]
 
 
-def _found(archive: Archive, run_id: str) -> Finished:
+def _found(archive: Archive, run_id: str, is_over: bool) -> Finished:
+    """is_over: the run is one of this program's, and has ended; the catalogue may be a moment behind."""
     run = record_of(archive, run_id)
     if run.recording_state == "none":
         raise Rejected(Problem(409, "No recording", f"The run {run.id} was not recorded."))
-    if run.recording_state == "writing" and not _is_finished(archive, run):
+    if run.recording_state == "writing" and not (
+        is_over and archive.recorder.written(run.id, FINISHED_WITHIN)
+    ):
         detail = f"The run {run.id} is being recorded; stop it first, then ask again."
         raise Rejected(Problem(409, "Still recorded", detail))
     return Finished(run, path_of(archive, run.id))
-
-
-def _is_finished(archive: Archive, run: RunRecord) -> bool:
-    return run.state != RUNNING and archive.recorder.written(run.id, FINISHED_WITHIN)
 
 
 @router.get("/runs/{run_id}/recording.mcap", response_class=FileResponse)

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import heapq
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import BinaryIO
 
 from server.exports.formats import ExportError, Job, Watch
 from server.exports.overlay import Overlay
-from server.recording.reading import Recording
+from server.recording.reading import Picture, Recording
 from vision.film import Film, FilmError, decode_jpeg, film_file, film_stream
 from vision.tracking.colour import Image
+
+OUT_OF_PLACE = 16
+"""Places by which a picture may stand too far back: four wait for the encoder at most, and some more for the disk."""
 
 Draw = Callable[[Image, float], Image]
 """The picture with something on it.  float: when it was taken, s since the run's start."""
@@ -44,12 +48,23 @@ def _fill(film: Film, recording: Recording, job: Job, watch: Watch) -> None:
 def _add_all(film: Film, recording: Recording, draw: Draw, watch: Watch) -> None:
     """A picture that cannot be decoded is left out: the one before it is shown for longer."""
     duration = recording.duration
-    for picture in recording.frames():
+    for picture in in_order(recording.frames()):
         image = decode_jpeg(picture.jpeg)
         if image is not None:
             _add(film, draw(image, picture.captured_s), picture.captured_s)
             watch(min(max(picture.time_s / duration, 0.0), 1.0) if duration else 1.0)
     watch(1.0)
+
+
+def in_order(pictures: Iterable[Picture]) -> Iterator[Picture]:
+    """By capture time: a picture whose encoding took long stands behind later ones in the file."""
+    waiting: list[tuple[float, int, Picture]] = []
+    for number, picture in enumerate(pictures):
+        heapq.heappush(waiting, (picture.captured_s, number, picture))
+        if len(waiting) > OUT_OF_PLACE:
+            yield heapq.heappop(waiting)[2]
+    while waiting:
+        yield heapq.heappop(waiting)[2]
 
 
 def _add(film: Film, image: Image, time: float) -> None:

@@ -16,13 +16,14 @@ BYTES_KEPT = 32 << 20
 
 
 class ChunkShelf:
-    """Messages by chunk. damaged: where the chunks stand that could not be read."""
+    """Messages by chunk. damaged: where the chunks stand that could not be read.  read: how many were unpacked."""
 
     def __init__(self, source: ByteSource, contents: Contents) -> None:
         self._source = source
         self._contents = contents
         self._kept: OrderedDict[int, tuple[list[Message], int]] = OrderedDict()
         self.damaged: set[int] = set()
+        self.read = 0
 
     def messages(self, place: ChunkPlace) -> list[Message]:
         """In the order of the chunk; none from a chunk that is damaged."""
@@ -40,6 +41,7 @@ class ChunkShelf:
 
     def _read(self, place: ChunkPlace) -> tuple[list[Message], int]:
         data = mcap.chunk(record_at(self._source, place, Opcode.CHUNK, mcap.CHUNK_LIMIT))
+        self.read += 1
         messages, others = mcap.in_chunk(data)
         for opcode, content in others:
             self._contents.add_name(opcode, content)

@@ -123,6 +123,11 @@ class Recording:
         return len(self._shelf.damaged)
 
     @property
+    def chunks_read(self) -> int:
+        """Quarter seconds that were unpacked, those that were unpacked again included."""
+        return self._shelf.read
+
+    @property
     def is_recovered(self) -> bool:
         """Its end was lost, and made anew."""
         return any(place.name == RECOVERED for place in self._contents.metadata)
@@ -202,7 +207,8 @@ class Recording:
 
     def events(self) -> list[dict[str, Any]]:
         """The lines of the event log, oldest first: time_s since the run's start, severity, code, message."""
-        return [_line(entry.time_s, entry.data) for entry in self.messages([EVENTS.name])]
+        lines = self._timeline.between(self._channels([EVENTS.name]))
+        return [_line(self._seconds(line.publish_time), self.decode(line)) for line in lines]
 
     def _channels(self, topics: Iterable[str] | None) -> dict[int, str]:
         wanted = None if topics is None else set(topics)
@@ -272,7 +278,7 @@ def _instant(log_time: int) -> datetime:
     return datetime.fromtimestamp(seconds, UTC) + timedelta(microseconds=rest / 1000)
 
 
-def _line(time: float, log: dict[str, Any] | bytes) -> dict[str, Any]:
+def _line(time: float, log: dict[str, Any] | bytes | None) -> dict[str, Any]:
     said = log if isinstance(log, dict) else {}
     severity = SEVERITIES.get(said.get("level", 0), "info")
     return {

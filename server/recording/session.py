@@ -41,7 +41,7 @@ MEGA = 1_000_000
 
 
 class Session:
-    """One run. failure: "" or why its recording has ended, in words.  finished: set when the file is closed and listed."""
+    """One run. failure: "" or why its recording has ended, in words.  finished: the file is closed, and listed."""
 
     def __init__(
         self, run: Run, conditions: Conditions, catalogue: Catalogue, folder: Path, disk: Disk

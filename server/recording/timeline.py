@@ -16,7 +16,7 @@ ALWAYS = 1 << 64
 class Timeline:
     """Within a channel messages are in the order of time, as the recorder writes them. Times are log times, ns.
 
-    A picture is ready later than the tick that it belongs to, so chunks may overlap a little in time.
+    Chunks may overlap in time; the recorder's do not.
     """
 
     def __init__(self, shelf: ChunkShelf, chunks: list[ChunkPlace]) -> None:

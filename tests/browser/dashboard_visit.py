@@ -34,7 +34,7 @@ class ServedRig:
 
     def __init__(self, data: Path, *options: str) -> None:
         """options: which rig, in place of the simulated one."""
-        self._data = data
+        self.data = data
         self._options = options or ("--sim",)
         self._process: subprocess.Popen[str] | None = None
         self._first_selection: dict[str, Any] | None = None
@@ -44,7 +44,7 @@ class ServedRig:
     def start(self) -> None:
         port = urlsplit(self.url).port or 0
         script = Path(sys.executable).with_name("pivotrig")
-        command = [str(script), "serve", *self._options, "--port", str(port), "--data", str(self._data)]
+        command = [str(script), "serve", *self._options, "--port", str(port), "--data", str(self.data)]
         self._process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         ready = threading.Event()
         threading.Thread(target=self._read, args=(self._process, ready), daemon=True).start()

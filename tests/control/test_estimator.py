@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from control.estimator import GATE, Estimator, EstimatorSettings
+from control.estimator import GATE, Carried, Estimator, EstimatorSettings
 from control.field_model import FieldModel
 from control.model import PIVOT_A, PIVOT_B, Measurement, Pivot, Pose, swing
 
@@ -207,6 +207,7 @@ def test_a_slip_is_believed_although_the_moment_of_the_switch_is_not_known_to_th
 def test_the_covariance_that_is_carried_is_the_predicted_one() -> None:
     """To now, as the filter itself would be predicted there: F P F' + Q."""
     stroll = Stroll(5)
+    carried = Carried(Pose(0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
     for index in range(120):
         stroll.step()
         if index > 3:

@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
 import pytest
 
+from control.news import Announcement
 from control.safety import Refused
 from control.snapshot import RigState
+from server.archive import Archive
 from server.recording.reading import Recording
+from server.recording.recorder import LONGEST_WAIT, Recorder
 from server.settings import RigFile
-from tests.faults.fault_bench import FaultBench, Reaction, recorded
+from tests.faults.fault_bench import FaultBench, recorded
 from tests.faults.invariants import (
     check_announced,
     check_limits,
@@ -18,6 +25,7 @@ from tests.faults.invariants import (
     check_zero,
     nothing_left_behind,
 )
+from tests.faults.promises import FRAME
 from tests.faults.trial import keeps_its_promise
 
 SIMULATED = RigFile().with_simulation(seed=3)
@@ -57,22 +65,24 @@ def test_a_disk_that_falls_too_far_behind_ends_the_run_before_memory_runs_out() 
     with that cause, and what is written opens."""
     with nothing_left_behind(), recorded(SIMULATED, patient=False) as bench:
         bench.walk()
-        reaction = bench.react("disk_slow", watch=13.0, delay_s=30.0)
-        assert (reaction.after, reaction.code) == (RigState.DISARMED, "recording"), reaction
-        assert reaction.noticed is not None
-        assert 8_000 <= reaction.noticed <= 12_000
-        check_stopped(bench, reaction, reaction.noticed)
+        fault = bench.inject("disk_slow", delay_s=60.0)
+        stopped = bench.until(lambda snapshot: snapshot.rig is not RigState.RUNNING, within=40.0)
+        assert stopped.rig is RigState.DISARMED
+        assert "the disk is too slow" in stopped.reason
+        assert stopped.time - fault * 1e-3 >= LONGEST_WAIT
+        bench.run_for(0.5)
+        check_stopped(bench, stopped.time)
         bench.mend("disk_slow")
-        check_recording(bench.recording_at_the_end(), reaction.fault * 1e-3)
+        check_recording(bench.recording_at_the_end(), fault * 1e-3)
 
 
-def check_stopped(bench: FaultBench, reaction: Reaction, noticeable: int) -> None:
-    """I1 to I4, and I6. noticeable: after the fault, ms."""
+def check_stopped(bench: FaultBench, noticed: float) -> None:
+    """I1 to I4, and I6. noticed: rig time, s."""
     trace, electrics = bench.trace, bench.electrics
     check_limits(trace.samples, electrics)
-    zero = check_zero(trace, electrics, reaction.fault + noticeable)
+    zero = check_zero(trace, electrics, round(noticed * 1e3) - FRAME)
     check_stays_zero(trace, zero)
-    check_announced(trace, reaction.code, (reaction.fault + noticeable) * 1e-3 - 0.1)
+    check_announced(trace, "recording", noticed - 0.1)
     check_period(trace.snapshots, lambda _: False)
 
 
@@ -86,6 +96,31 @@ def test_where_nothing_is_recorded_the_disk_does_not_matter(fault: str) -> None:
         assert bench.react(fault).after is RigState.RUNNING
         assert bench.archive is not None
         assert list(bench.archive.folder.iterdir()) == []
+
+
+class Mistaken(Recorder):
+    """A recorder with a mistake in it."""
+
+    def event(self, line: Announcement) -> None:
+        if line.code == "injected":
+            raise ZeroDivisionError("a mistake of the program")
+        super().event(line)
+
+
+def test_a_recorder_with_a_mistake_ends_the_run_and_nothing_else() -> None:
+    """When the recorder itself fails, no tick is missed; a run that must be recorded ends, and says why."""
+    with nothing_left_behind(), TemporaryDirectory() as folder:
+        archive = Archive.open(Path(folder))
+        recorder = Mistaken(archive.folder, archive.catalogue, patient=True)
+        bench = FaultBench(SIMULATED, replace(archive, recorder=recorder))
+        bench.walk()
+        reaction = bench.react("flicker")
+        assert (reaction.after, reaction.code) == (RigState.DISARMED, "recording"), reaction
+        assert "ZeroDivisionError" in reaction.reason
+        check_stopped(bench, reaction.fault * 1e-3 + FRAME * 1e-3)
+        bench.machine.close()
+        recorder.close()
+        archive.close()
 
 
 def test_a_run_that_lost_its_recording_says_so_in_it(bench: FaultBench) -> None:

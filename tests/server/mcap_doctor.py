@@ -68,6 +68,7 @@ def examine(path: Path) -> Statistics:
 
 def _check_data_crc(path: Path, end: tuple[int, int, McapRecord]) -> None:
     at, _, record = end
+    assert isinstance(record, DataEnd)
     assert record.data_section_crc == zlib.crc32(path.read_bytes()[:at])
 
 
@@ -148,11 +149,13 @@ def _check_indexes(
         assert index.compressed_size == len(chunk.data)
         starts = {start: record for (start, _), record in at.items()}
         for channel, offset in index.message_index_offsets.items():
-            assert starts[offset].channel_id == channel
-    for index in _all(summary, AttachmentIndex):
-        assert at[index.offset, index.length].name == index.name
-    for index in _all(summary, MetadataIndex):
-        assert at[index.offset, index.length].name == index.name
+            following = starts[offset]
+            assert isinstance(following, MessageIndex)
+            assert following.channel_id == channel
+    for index in (*_all(summary, AttachmentIndex), *_all(summary, MetadataIndex)):
+        there = at[index.offset, index.length]
+        assert isinstance(there, Attachment | Metadata)
+        assert there.name == index.name
     assert len(_all(summary, ChunkIndex)) == len(_all(body, Chunk))
 
 
@@ -172,7 +175,7 @@ def _check_offsets(footer: Footer, summary: list[tuple[int, int, McapRecord]]) -
     for _, offset in offsets:
         end = offset.group_start + offset.group_length
         group = [record for at, _, record in summary if offset.group_start <= at < end]
-        assert group == _all(summary, opcodes[offset.group_opcode])
+        assert group == _all(summary, opcodes[Opcode(offset.group_opcode)])
 
 
 def _all(records: list[tuple[int, int, McapRecord]], kind: type) -> list:

@@ -12,7 +12,15 @@ from server.archive import Archive
 from server.assembly import build_machine
 from server.catalogue.records import RunRecord
 from server.headless import Headless
+from server.recording.reading import Recording
 from server.settings import RigFile
+
+
+def outcome_of(path: Path) -> dict[str, Any]:
+    """How the recording ended, which it must have done."""
+    with Recording.open(path) as recording:
+        assert recording.outcome is not None
+        return recording.outcome
 
 
 @dataclass(frozen=True)

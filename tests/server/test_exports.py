@@ -23,7 +23,8 @@ from server.exports.columns import COLUMNS, Kind, named
 from server.exports.formats import ExportError, Job, export, export_file
 from server.exports.naming import file_name
 from server.exports.overlay import Overlay
-from server.recording.reading import Recording
+from server.exports.run_film import in_order
+from server.recording.reading import Picture, Recording
 from server.settings import RigFile
 from tests.server.walked_run import walk
 from vision.camera_model import CameraModel
@@ -198,9 +199,15 @@ def test_the_film_lasts_as_long_as_the_run(exported, walked):
     with av.open(io.BytesIO(exported("mp4")), "r") as film:
         shown = [picture.time for picture in film.decode(video=0)]
     with Recording.open(walked.path) as recording:
-        taken = [picture.captured_s for picture in recording.frames()]
+        taken = sorted(picture.captured_s for picture in recording.frames())
     assert shown == pytest.approx([time - taken[0] for time in taken], abs=1e-4)
     assert shown[-1] == pytest.approx(4.2, abs=0.3)
+
+
+def test_a_picture_that_was_late_has_its_place_in_the_film():
+    order = [3, 0, 1, 2, 4, 12, 5, 6, 7, 8, 9, 10, 11, 13]
+    pictures = [Picture(0.1 * place, 0.1 * number, b"") for place, number in enumerate(order)]
+    assert [round(10 * picture.captured_s) for picture in in_order(pictures)] == sorted(order)
 
 
 def test_a_film_in_a_file_can_be_jumped_in(walked, tmp_path):

@@ -48,7 +48,6 @@ async def at(tmp_path_factory, serve):
     archive = Archive.open(data)
     archive.catalogue.add(RunRecord(UNRECORDED, STARTED, state="finished"))
     archive.catalogue.add(RunRecord(DAMAGED, STARTED, state="finished", recording_state="complete"))
-    archive.path_of(DAMAGED).write_bytes(b"rubbish")
     rig = Rig(build_machine(RigFile(), realtime=True), recorder=archive.recorder)
     async with serve(create_app(rig, archive)) as served:
         served.rig, served.archive = rig, archive
@@ -159,7 +158,8 @@ async def test_an_export_ends_with_its_client(at):
     await until(lambda: not exports())
 
 
-async def test_what_is_not_there_is_said(api):
+async def test_what_is_not_there_is_said(api, at):
+    at.archive.path_of(DAMAGED).write_bytes(b"rubbish")
     assert "no run" in await problem(api, "samples.csv", "20200101-000000-0000", 404)
     assert "no run" in await problem(api, "samples.csv", "etc", 404)
     assert "was not recorded" in await problem(api, "samples.csv", UNRECORDED, 409)

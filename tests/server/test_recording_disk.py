@@ -16,11 +16,12 @@ from control.safety import Refused
 from control.simulation.disk_faults import DiskFaults
 from server.archive import Archive
 from server.faulty_disk import FaultyDisk
-from server.recording.disk import LocalDisk
+from server.recording.disk import LocalDisk, LocalFile
 from server.recording.reading import Recording
 from server.recording.recorder import LONGEST_WAIT
 from server.recording_section import RecordingSection
 from tests.server.mcap_doctor import examine
+from tests.server.recorded_walk import outcome_of
 from tests.server.recordings_bench import RecordingsBench, Walk
 
 LOST_AT_MOST = 0.25 + 2.0 / 60.0
@@ -56,7 +57,7 @@ def wait_for(condition, within=5.0):
 class AtPace:
     """Told of each tick: lets the recorder's thread keep up, and does something at one of them."""
 
-    def __init__(self, recorder, at=None, do=None):
+    def __init__(self, recorder, at=0, do=lambda: None):
         self._recorder = recorder
         self._at = at
         self._do = do
@@ -94,8 +95,8 @@ class Shrinking(LocalDisk):
 
     left = 1 << 40
 
-    def free(self, _folder):
-        return self.left
+    def free(self, folder):
+        return min(self.left, super().free(folder))
 
 
 def test_a_recording_ends_before_the_disk_is_full_and_is_whole(bench, archive):
@@ -114,9 +115,8 @@ def test_a_recording_ends_before_the_disk_is_full_and_is_whole(bench, archive):
     assert "499 MB are free" in failures[-1]
     assert "keep_free_MB = 500" in failures[-1]
     examine(archive.path_of(id))
-    with Recording.open(archive.path_of(id)) as recording:
-        assert recording.outcome["failure"] == failures[-1]
-        assert recording.outcome["state"] == "finished"
+    outcome = outcome_of(archive.path_of(id))
+    assert (outcome["failure"], outcome["state"]) == (failures[-1], "finished")
 
 
 def test_a_run_that_cannot_be_recorded_is_refused_early(archive):
@@ -152,10 +152,17 @@ class Stuck(LocalDisk):
         self.may_go_on.set()
 
     def create(self, path):
-        file = super().create(path)
-        sync = file.sync
-        file.sync = lambda: (self.may_go_on.wait(30.0), sync())
-        return file
+        return StuckFile(path, self.may_go_on)
+
+
+class StuckFile(LocalFile):
+    def __init__(self, path, may_go_on):
+        super().__init__(path)
+        self._may_go_on = may_go_on
+
+    def sync(self):
+        self._may_go_on.wait(30.0)
+        super().sync()
 
 
 def test_a_disk_that_hangs_for_a_while_loses_nothing(bench, archive):
@@ -174,8 +181,8 @@ def test_a_disk_that_hangs_for_a_while_loses_nothing(bench, archive):
     id = bench.record_in(archive, Walk(duration=5.0), watch)
 
     assert held == [""]
+    assert outcome_of(archive.path_of(id))["failure"] == ""
     with Recording.open(archive.path_of(id)) as recording:
-        assert recording.outcome["failure"] == ""
         assert len(list(recording.ticks(topics=["/state"]))) >= 300
 
 
@@ -199,8 +206,7 @@ def test_a_disk_that_hangs_for_long_ends_the_recording_and_keeps_what_was_handed
     assert first / 60.0 == pytest.approx(LONGEST_WAIT, abs=0.2)
     examine(archive.path_of(id))
     assert last_tick(archive.path_of(id)) >= LONGEST_WAIT
-    with Recording.open(archive.path_of(id)) as recording:
-        assert recording.outcome["failure"] == failures[first]
+    assert outcome_of(archive.path_of(id))["failure"] == failures[first]
 
 
 def test_a_recording_never_takes_the_place_of_another_file(bench, archive):
@@ -252,11 +258,11 @@ def test_what_is_flushed_is_readable_while_the_run_goes_on(bench, archive):
 def test_pictures_are_left_out_when_there_is_no_time_for_them_and_ticks_never(bench, archive):
     """Two seconds of pictures are handed over in a tenth of one."""
     id = bench.record_in(archive, Walk(duration=2.0, frame_rate=60.0))
+    outcome = outcome_of(archive.path_of(id))
+    assert outcome["frames_left_out"] > 0
+    assert outcome["frames"] + outcome["frames_left_out"] == pytest.approx(120, abs=2)
+    assert outcome["ticks"] >= 120
     with Recording.open(archive.path_of(id)) as recording:
-        outcome = recording.outcome
-        assert outcome["frames_left_out"] > 0
-        assert outcome["frames"] + outcome["frames_left_out"] == pytest.approx(120, abs=2)
-        assert outcome["ticks"] >= 120
         assert len(list(recording.ticks())) == outcome["ticks"]
 
 

@@ -6,6 +6,7 @@ import base64
 import json
 import math
 from itertools import pairwise
+from pathlib import Path
 
 import pytest
 from mcap.reader import make_reader
@@ -38,11 +39,13 @@ def walked(tmp_path_factory):
 @pytest.fixture(scope="module")
 def messages(walked):
     """(topic, schema, log time, publish time, data) of each, in the order of time, by the public reader."""
+    found = []
     with walked.path.open("rb") as file:
-        return [
-            (channel.topic, json.loads(schema.data), message.log_time, message.publish_time, json.loads(message.data))
-            for schema, channel, message in make_reader(file, validate_crcs=True).iter_messages()
-        ]  # fmt: skip
+        for schema, channel, message in make_reader(file, validate_crcs=True).iter_messages():
+            assert schema is not None
+            said = json.loads(schema.data), message.log_time, message.publish_time, json.loads(message.data)
+            found.append((channel.topic, *said))
+    return found
 
 
 def of(messages, topic):
@@ -73,7 +76,9 @@ def test_the_file_is_sound(walked):
 
 def test_a_chunk_lasts_a_quarter_of_a_second_at_most(walked):
     with walked.path.open("rb") as file:
-        chunks = make_reader(file).get_summary().chunk_indexes
+        summary = make_reader(file).get_summary()
+    assert summary is not None
+    chunks = summary.chunk_indexes
     lengths = [(chunk.message_end_time - chunk.message_start_time) * 1e-9 for chunk in chunks]
     assert max(lengths) <= FLUSH
     assert math.fsum(lengths) >= 3.0 - len(lengths) * 2 * PERIOD
@@ -282,3 +287,9 @@ def test_the_events_of_the_run_are_told(messages):
     told = [(line["level"], line["message"]) for line in of(messages, "/events")]
     assert (2, "walking") in told
     assert (2, "run finished") in told
+
+
+def test_the_readme_lists_the_topics():
+    readme = (Path(__file__).parents[2] / "README.md").read_text()
+    for topic in TOPICS:
+        assert f"| `{topic.name}` | `{topic.schema_name}` | {topic.kind.__doc__} |" in readme

@@ -11,12 +11,10 @@ import pytest
 from mcap.reader import make_reader
 from typer.testing import CliRunner
 
-from control.news import Announcement
 from server.archive import Archive
 from server.catalogue.opening import NAME
 from server.cli import app
 from server.recording.reading import Recording
-from server.recording.recorder import Recorder
 from tests.processes import served
 from tests.server.rig_visit import act, arm, until, until_gone
 
@@ -87,11 +85,13 @@ async def test_what_is_changed_on_the_way_is_recorded(at, disarmed):
     assert answer.status_code == 200, answer.text
     await until_gone(disarmed, 0.5)
     await act(disarmed, "/runs/current/stop")
-    gaits = [json.loads(each["gait"])["sweep_deg"] for each in messages_of(await written(at, id), "/selection")]
+    gaits = [
+        json.loads(each["gait"])["sweep_deg"] for each in messages_of(await written(at, id), "/selection")
+    ]
     assert gaits == [10.0, 15.0]
 
 
-async def test_a_run_that_cannot_be_recorded_is_refused_in_words_and_the_rig_stays_armed(at, disarmed):
+async def test_a_run_that_cannot_be_recorded_is_refused_in_words_and_the_rig_stays_armed(disarmed):
     await arm(disarmed)
     await act(disarmed, "/simulation/faults", 201, name="disk_full")
     problem = await act(disarmed, "/runs", 409, **WALK)
@@ -133,22 +133,12 @@ async def test_a_catalogue_that_cannot_be_written_stops_no_run(at, disarmed):
     assert messages_of(await written(at, id), "/state")
 
 
-class Mistaken(Recorder):
-    """A recorder with a mistake in it."""
-
-    def event(self, line: Announcement) -> None:
-        if line.code == "pause":
-            raise ZeroDivisionError("a fault of the program")
-        super().event(line)
-
-
-@pytest.mark.parametrize("signal_number", [signal.SIGTERM])
-def test_a_server_that_is_ended_ends_its_run_in_good_order(tmp_path, signal_number):
+def test_a_server_that_is_ended_ends_its_run_in_good_order(tmp_path):
     with served(tmp_path, "--sim") as server:
         server.start_walking()
         id = server.get("/state")["run"]["id"]
         began = time.monotonic()
-        server.process.send_signal(signal_number)
+        server.process.send_signal(signal.SIGTERM)
         assert server.process.wait(10) == 0
         assert time.monotonic() - began <= GONE_WITHIN
     archive = Archive.open(tmp_path)

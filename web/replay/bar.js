@@ -51,7 +51,7 @@ const QUIET = ["disarmed", "connecting"];
 function RigMeanwhile() {
   const word = useStore((state) => stateWord(state.tick));
   if (QUIET.includes(word)) return null;
-  return html`<p class="replay-meanwhile" role="note" data-state=${word}>The rig itself is <strong>${word}</strong></p>`;
+  return html`<p class="replay-meanwhile" role="note" data-state=${word}>The rig itself: <strong>${word}</strong></p>`;
 }
 
 function Trouble() {

@@ -1,6 +1,7 @@
 /** The charts while a recording is shown: the whole run or a part of it, with the time of the replay in each. */
 import { Chart, CHARTS } from "../charts/charts.js";
 import { html, useEffect, useMemo } from "../view.js";
+import { lookCloser } from "./closer.js";
 import { setLoop, zoomOut } from "./player.js";
 import { useReplay } from "./replay.js";
 import { Badge, Line, stamp } from "./signs.js";
@@ -9,9 +10,11 @@ import { wholeRun } from "./timeline.js";
 export function ReplayCharts() {
   const runs = useReplay((replay) => replay.runs) ?? [];
   const zoom = useReplay((replay) => replay.zoom);
+  const closer = useReplay((replay) => replay.closer);
   const source = useMemo(() => wholeRun(runs), [runs]);
   const charts = useMemo(() => (runs.length > 1 ? CHARTS.map(compared) : CHARTS), [runs.length > 1]);
-  useEffect(source.changed, [zoom]);
+  useEffect(source.changed, [zoom, closer]);
+  useEffect(() => void lookCloser(), [zoom]);
   if (runs.length === 0) return html`<section class="charts" aria-label="Charts of the recording"></section>`;
   return html`
     <section class="charts" aria-label="Charts of the recording">

@@ -118,7 +118,9 @@ export function loopToHere() {
 }
 
 export function setLoop(from, to) {
-  if (to - from >= SHORTEST_RANGE) change({ loop: [from, to] });
+  if (!(to - from >= SHORTEST_RANGE)) return;
+  change({ loop: [from, to] });
+  if (!(from <= time && time <= to)) seek(from);
 }
 
 export const endLoop = () => change({ loop: null });
@@ -126,10 +128,10 @@ export const endLoop = () => change({ loop: null });
 /** The charts show this range alone. */
 export function zoomTo(from, to) {
   const range = [Math.max(0, from), Math.min(duration(), to)];
-  if (range[1] - range[0] >= SHORTEST_RANGE) change({ zoom: range });
+  if (range[1] - range[0] >= SHORTEST_RANGE) change({ zoom: range, closer: null });
 }
 
-export const zoomOut = () => change({ zoom: null });
+export const zoomOut = () => change({ zoom: null, closer: null });
 
 /** Hears at the pace of text what `subscribe` tells faster, and always of the last. */
 export const atTextPace = (subscribe) => (listener) => {

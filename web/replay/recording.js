@@ -33,7 +33,7 @@ export function recordingOf(run, overview) {
 export const mayHavePictures = (recording) => recording !== null && recording.frames !== 0;
 
 /** Every column of the charts, with nulls for what was not recorded, and angles on one turn. */
-function columnsOf(series) {
+export function columnsOf(series) {
   const times = series.time_s ?? [];
   const unknown = times.map(() => null);
   const columns = Object.fromEntries(COLUMNS.map((name) => [name, series[name] ?? unknown]));

@@ -17,6 +17,8 @@ const OPENING = {
   playing: false, speed: 1,
   /** [from, to] in s: what is played again and again, and what the charts show; null: the whole run. */
   loop: null, zoom: null,
+  /** The curves of what the charts show, one a run, where the whole run's are too coarse for it (closer.js). */
+  closer: null,
 };
 
 export const useReplay = (select) => useStore((state) => (state.replay ? select(state.replay) : null));

@@ -42,8 +42,9 @@ export function wholeRun(runs) {
 
 /** [times, values…], one a curve, in the order of the curves. */
 function columnsOf(runs, curves) {
-  if (runs.length === 1) return [runs[0].series.time_s, ...curves.map(({ column }) => runs[0].series[column])];
-  const tables = runs.map(({ series }, index) => [series.time_s, ...curves.filter(({ run = 0 }) => run === index).map(({ column }) => series[column])]);
+  const shown = get().replay?.closer ?? runs.map(({ series }) => series);
+  if (shown.length === 1) return [shown[0].time_s, ...curves.map(({ column }) => shown[0][column])];
+  const tables = shown.map((series, index) => [series.time_s, ...curves.filter(({ run = 0 }) => run === index).map(({ column }) => series[column])]);
   const [times, ...joined] = uPlot.join(tables);
   const firsts = runs.map((_, index) => tables.slice(0, index).reduce((count, table) => count + table.length - 1, 0));
   return [times, ...curves.map(({ run = 0 }) => joined[firsts[run]++])];

@@ -43,7 +43,7 @@ function Loop() {
     <span class="loop" role="group" aria-label="Loop">
       <button type="button" aria-pressed=${loop !== null} title="The loop begins here ([)" onClick=${loopFromHere}><span class="unseen">Loop from here: </span>A</button>
       <button type="button" aria-pressed=${loop !== null} title="The loop ends here (])" onClick=${loopToHere}><span class="unseen">Loop to here: </span>B</button>
-      ${loop !== null && html`<button class="quiet" type="button" title="Play the whole run again" onClick=${endLoop}>No loop</button>`}
+      <button type="button" aria-label="No loop" title="Play the whole run again (\\)" disabled=${loop === null} onClick=${endLoop}>×</button>
     </span>
   `;
 }
