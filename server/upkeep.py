@@ -125,7 +125,8 @@ class Upkeep:
         if not gone:
             return ""
         size = sum(run.size_bytes for run in gone) / MB
-        return f"{len(gone)} old runs were deleted ({size:.0f} MB), as [recording] of the rig file says"
+        number = "one old run was" if len(gone) == 1 else f"{len(gone)} old runs were"
+        return f"{number} deleted ({size:.1f} MB), as [recording] of the rig file says"
 
 
 _ENDS = {state.value for state in RunState if state is not RunState.RUNNING}

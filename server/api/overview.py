@@ -14,6 +14,7 @@ from pydantic import Field
 from server.api.access import TheArchive
 from server.api.problems import Problem, Rejected
 from server.api.recorded import path_of, record_of
+from server.api.replay import LONGEST
 from server.recording.reading import Recording, Unreadable
 from server.replay.overview import overview_of
 from server.replay.series import computed_series
@@ -22,9 +23,6 @@ if TYPE_CHECKING:
     from server.archive import Archive
 
 router = APIRouter(tags=["runs"])
-
-LONGEST = 1e6
-"""The latest instant that can be asked for, s: more than any recording has."""
 
 
 @router.get("/runs/{run_id}/overview", response_class=Response)
@@ -56,7 +54,7 @@ def series_json(archive: Archive, run_id: str, start: float, end: float) -> byte
     """start, end: s since the run's start; where there is nothing between them, no columns."""
     record_of(archive, run_id)
     with opened(archive, run_id) as recording:
-        return msgspec.json.encode({"series": computed_series(recording, start, end) if start < end else {}})
+        return msgspec.json.encode({"series": computed_series(recording, start, end)})
 
 
 @contextmanager

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sqlite3
+import time
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
@@ -11,14 +12,16 @@ from pathlib import Path
 from sqlalchemy import Connection, Engine, inspect, text
 from sqlalchemy.exc import DBAPIError, SQLAlchemyError
 
-from server.catalogue.database import FOR_WRITING, Access, access_of, engine_of
+from server.catalogue.database import BUSY, FOR_WRITING, Access, access_of, engine_of
 from server.catalogue.errors import CatalogueError
 from server.catalogue.tables import REVISIONS, VERSION, Base
-from server.catalogue.words import in_words, is_broken
+from server.catalogue.words import in_words, is_broken, is_busy
 
 NAME = "catalogue.sqlite"
 SIDE_FILES = ("-wal", "-shm")
 """What SQLite keeps beside its file."""
+AGAIN = 0.02
+"""A catalogue that another program is just making is tried again after this long, s."""
 CHECKED_WHOLE = 8 << 20
 """A catalogue of up to this many bytes is checked whole when it is opened, which takes some 10 ms."""
 
@@ -42,7 +45,7 @@ def opened(data: Path) -> Opened:
     path = data / NAME
     try:
         data.mkdir(parents=True, exist_ok=True)
-        return _opened(path)
+        return _opened_in_turn(path)
     except NotACatalogue:
         return _opened_anew(path)
     except OSError as error:
@@ -51,6 +54,18 @@ def opened(data: Path) -> Opened:
         ) from error
     except (sqlite3.Error, SQLAlchemyError) as error:
         raise CatalogueError(in_words(error, path)) from error
+
+
+def _opened_in_turn(path: Path) -> Opened:
+    """Several programs that make a catalogue at the same instant are refused by SQLite without being waited for."""
+    give_up = time.monotonic() + BUSY
+    while True:
+        try:
+            return _opened(path)
+        except (sqlite3.OperationalError, SQLAlchemyError) as error:
+            if not is_busy(error) or time.monotonic() > give_up:
+                raise
+        time.sleep(AGAIN)
 
 
 def _opened_anew(path: Path) -> Opened:

@@ -36,6 +36,14 @@ def is_broken(error: sqlite3.Error) -> bool:
     return primary_code(error) in BROKEN_CODES
 
 
+def is_busy(error: SQLAlchemyError | sqlite3.Error) -> bool:
+    cause = getattr(error, "orig", error)
+    return isinstance(cause, sqlite3.Error) and primary_code(cause) in (
+        sqlite3.SQLITE_BUSY,
+        sqlite3.SQLITE_LOCKED,
+    )
+
+
 def in_words(error: SQLAlchemyError | sqlite3.Error, path: Path) -> str:
     cause = getattr(error, "orig", error)
     code = primary_code(cause) if isinstance(cause, sqlite3.Error) else 0

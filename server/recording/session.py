@@ -86,13 +86,18 @@ class Session:
 
     def begin(self) -> None:
         """The file and the row."""
-        settings = settings_json(self.run, self._conditions)
         with self._guarded():
-            if self.is_kept:
-                self._file = self._create(settings)
-        self._tell_catalogue(
-            lambda: self._catalogue.add(record_of(settings, "none" if self._file is None else "writing"))
-        )
+            settings = settings_json(self.run, self._conditions)
+            try:
+                if self.is_kept:
+                    self._file = self._create(settings)
+            finally:
+                self._list(settings)
+
+    def _list(self, settings: dict[str, Any]) -> None:
+        """A run whose file cannot be made is listed, too."""
+        state = "none" if self._file is None else "writing"
+        self._tell_catalogue(lambda: self._catalogue.add(record_of(settings, state)))
 
     def _create(self, settings: dict[str, Any]) -> RunFile:
         keep_free = self._conditions.recording.keep_free_MB * MEGA

@@ -29,7 +29,7 @@ def computed_series(
 def sampled(recording: Recording, start: float, end: float) -> Iterator[tuple[float, Tick]]:
     """Different ticks, evenly spread, with the time at which each is the newest, s since the run's start."""
     last = None
-    for time in np.linspace(start, end, MOST_POINTS):
+    for time in np.linspace(start, end, MOST_POINTS) if start < end else ():
         tick = recording.tick_at(float(time))
         number = None if tick is None else tick.get("/state", NOTHING).get("tick")
         if tick is not None and number != last:

@@ -138,7 +138,9 @@ def check_recording(path: Path, fault: float) -> None:
         newest = recording.tick_at(recording.duration)
     assert newest is not None, f"I5: no tick in {path.name}"
     kept_until = newest["/state"]["time_s"]
-    assert kept_until >= fault - LOST, f"I5: recorded until {kept_until:.2f} s, the fault came at {fault:.2f} s"
+    assert kept_until >= fault - LOST, (
+        f"I5: recorded until {kept_until:.2f} s, the fault came at {fault:.2f} s"
+    )
 
 
 def check_period(snapshots: Iterable[Snapshot], except_for: Callable[[float], bool]) -> None:

@@ -36,7 +36,7 @@ class OutsideEvent:
 EVENTS = (
     OutsideEvent(
         "Program or computer dies", "the page is gone", "board alone", "200",
-        "start pivotrig; it is disarmed", "test_computer_dies",
+        "start pivotrig; it is disarmed, and mends the recording", "test_computer_dies",
     ),
     OutsideEvent(
         "Program or computer freezes", "the page stands still", "held or disarmed", "200", "resume or arm",

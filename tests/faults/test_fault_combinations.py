@@ -10,7 +10,13 @@ from control.safety import Refused
 from control.simulation.faults.injection import KINDS
 from control.snapshot import RigState
 from tests.faults.fault_bench import FaultBench, fault_bench
-from tests.faults.invariants import OVERSHOOT_UNSENSED, check_limits, check_stays_zero, zero_at
+from tests.faults.invariants import (
+    OVERSHOOT_UNSENSED,
+    check_limits,
+    check_recording,
+    check_stays_zero,
+    zero_at,
+)
 
 STOPPING = ("robot_hidden", "supply_off", "driver_fault")
 
@@ -85,3 +91,5 @@ def storm(bench: FaultBench, dice: random.Random) -> None:
     trace = bench.trace
     check_limits(trace.samples, bench.electrics, OVERSHOOT_UNSENSED)
     check_stays_zero(trace, zero_at(trace.samples, stopped - 1))
+    walked_until = max(snapshot.time for snapshot in trace.snapshots if snapshot.run is not None)
+    check_recording(bench.recording_at_the_end(), walked_until)

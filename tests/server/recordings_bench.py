@@ -90,16 +90,17 @@ class RecordingsBench:
         archive.recorder.begin(run, self.conditions(walk))
         archive.recorder.event(Announcement(ZERO, "info", "running", "running"))
         tally = MetricsTally(LENGTH)
-        for index in range(1, round(walk.duration * walk.rate) + 1):
+        last = round(walk.duration * walk.rate)
+        for index in range(1, last + 1):
             snapshot = self.snapshot(run, index, index / walk.rate, tally)
             archive.recorder.tick(snapshot, self._frame(snapshot))
             if watch is not None:
                 watch(snapshot)
-        metrics = tally.metrics(Counts(index // 30, index // 30, index // 60), index / walk.rate)
-        archive.recorder.event(Announcement(ZERO + index / walk.rate, "info", "armed", "run finished"))
+        metrics = tally.metrics(Counts(last // 30, last // 30, last // 60), last / walk.rate)
+        archive.recorder.event(Announcement(ZERO + last / walk.rate, "info", "armed", "run finished"))
         archive.recorder.end(replace(run, state=RunState.FINISHED, metrics=metrics))
         for more in range(1, math.ceil(TAIL * walk.rate) + 2):
-            still = self.snapshot(run, index + more, (index + more) / walk.rate, MetricsTally(LENGTH))
+            still = self.snapshot(run, last + more, (last + more) / walk.rate, MetricsTally(LENGTH))
             archive.recorder.tick(
                 replace(still, rig=RigState.ARMED, run=None, reference=None, error=None), None
             )

@@ -16,12 +16,14 @@ async def until(api, **wanted):
 
 
 async def until_gone(api, duration):
-    """Until the run has gone on for so long, s."""
+    """Until the run has gone on for so long, s; resumed when a busy machine has made the rig hold it."""
     async with asyncio.timeout(TIMEOUT + duration):
         while True:
-            run = (await api.get("/state")).json()["run"]
-            if run is not None and run["elapsed_s"] >= duration:
+            state = (await api.get("/state")).json()
+            if state["run"] is not None and state["run"]["elapsed_s"] >= duration:
                 return
+            if state["rig"] == "held":
+                await api.post("/runs/current/resume")
             await asyncio.sleep(0.02)
 
 

@@ -9,6 +9,7 @@ import signal
 import sqlite3
 from collections.abc import Callable
 from contextlib import closing
+from multiprocessing.synchronize import Barrier
 from pathlib import Path
 
 import pytest
@@ -79,6 +80,33 @@ def test_a_newer_catalogue_is_refused_and_left_alone(tmp_path: Path) -> None:
     assert (tmp_path / NAME).read_bytes() == before
 
 
+def add_to(data: Path, index: int, together: Barrier, answers) -> None:
+    together.wait(timeout=30.0)
+    catalogue = Catalogue.open(data)
+    catalogue.add(record(index))
+    catalogue.close()
+    answers.put(catalogue.is_new)
+
+
+def test_several_programs_that_make_a_catalogue_at_once_make_one(tmp_path: Path, full: bool) -> None:
+    context = multiprocessing.get_context("fork")
+    for attempt in range(25 if full else 3):
+        data, together, answers = tmp_path / str(attempt), context.Barrier(6), context.SimpleQueue()
+        programs = [
+            context.Process(target=add_to, args=(data, index, together, answers)) for index in range(6)
+        ]
+        for program in programs:
+            program.start()
+        for program in programs:
+            program.join()
+        assert [program.exitcode for program in programs] == [0] * 6
+        assert sorted(answers.get() for _ in programs) == [False] * 5 + [True]
+        answers.close()
+        catalogue = Catalogue.open(data)
+        assert catalogue.page().total == 6
+        catalogue.close()
+
+
 def rubbish(path: Path) -> None:
     path.write_bytes(os.urandom(20_000))
 
@@ -145,7 +173,7 @@ def in_a_child(work: Callable[..., str], *arguments: object) -> list[str]:
     with ours, theirs:
         child = context.Process(target=lambda: theirs.send(work(*arguments)))
         child.start()
-        answer = ours.recv() if ours.poll(30.0) else ""
+        answer: str = ours.recv() if ours.poll(30.0) else ""
         child.join()
     assert child.exitcode == 0
     return answer.splitlines()

@@ -7,6 +7,7 @@ import json
 import math
 import re
 import struct
+import tracemalloc
 from typing import Any, cast
 
 import av
@@ -19,6 +20,7 @@ from scipy.io import loadmat
 
 from control.model import PIVOT_A, Pose, pivot_point
 from server.assembly import build_machine
+from server.exports import table as export_table
 from server.exports.columns import COLUMNS, Kind, named
 from server.exports.formats import ExportError, Job, export, export_file
 from server.exports.naming import file_name
@@ -26,6 +28,7 @@ from server.exports.overlay import Overlay
 from server.exports.run_film import in_order
 from server.recording.reading import Picture, Recording
 from server.settings import RigFile
+from tests.server.recordings_bench import RecordingsBench, Walk
 from tests.server.walked_run import walk
 from vision.camera_model import CameraModel
 from vision.overlay import END_A
@@ -161,6 +164,22 @@ def test_every_form_takes_a_torn_recording(walked, tmp_path, format):
     sink = io.BytesIO()
     export(Job(torn, format, overlay=True), sink)
     assert len(sink.getvalue()) > 1000
+
+
+def test_memory_does_not_grow_with_the_run(tmp_path, monkeypatch):
+    """In batches of 25 ticks here, so that a short run has many of them."""
+    monkeypatch.setattr(export_table, "AT_ONCE", 25)
+    bench = RecordingsBench()
+    peaks = []
+    for index, duration in enumerate((2.0, 2.0, 8.0)):
+        id = bench.record(tmp_path, Walk(duration=duration, frame_rate=0.0, index=index))
+        tracemalloc.start()
+        with open(tmp_path / f"{index}.csv", "wb") as sink:
+            export(Job(tmp_path / "recordings" / f"{id}.mcap", "csv"), sink)
+        peaks.append(tracemalloc.get_traced_memory()[1])
+        tracemalloc.stop()
+    _, short, long = peaks  # the first one also loads what all need
+    assert long <= 1.3 * short
 
 
 @pytest.mark.parametrize("content", [b"", b"no recording at all", None])

@@ -10,7 +10,7 @@ from typer.testing import CliRunner
 from control.gait import Gait
 from control.runs import Choice, RunRequest, Selection
 from control.trajectories import trajectories
-from control.trajectories.custom import save_path
+from control.trajectories.custom import SavedPath, save_path
 from server.app import create_app
 from server.archive import Archive
 from server.assembly import build_machine
@@ -88,7 +88,9 @@ async def test_the_same_is_asked_for_again_and_what_has_changed_since_is_told(re
     assert run["trajectory"] == {"name": OWN, "parameters": {"speed_mm_s": 4.0}}
     assert (run["label"], run["tags"], run["duration_s"]) == ("corner again", ["a", "b"], 1.0)
     assert run["unattended"]
-    assert trajectories[OWN].whole.points_mm == [(0.0, -42.0), (0.0, -30.0), (10.0, -30.0)]
+    saved = trajectories[OWN]
+    assert issubclass(saved, SavedPath)
+    assert saved.whole.points_mm == [(0.0, -42.0), (0.0, -30.0), (10.0, -30.0)]
     told = {each["name"]: (each["then"], each["now"]) for each in answer["differences"]}
     assert told == {"simulation.seed": (5, 1), "simulation.latency_ms": (30.0, 35.0)}
     assert "simulation.seed was 5 and is 1 now" in [each["words"] for each in answer["differences"]]
@@ -105,7 +107,9 @@ async def test_another_path_of_that_name_is_not_taken_for_it(rest):
 
 def outcome_of(data, id):
     with Recording.open(data / "recordings" / f"{id}.mcap") as recording:
-        return recording.outcome["metrics"], recording.tick_at(recording.duration)
+        outcome, last = recording.outcome, recording.tick_at(recording.duration)
+    assert outcome is not None and last is not None
+    return outcome["metrics"], last
 
 
 def test_a_headless_run_comes_out_the_same_to_the_last_digit(tmp_path):

@@ -30,7 +30,9 @@ def test_it_serves_a_disarmed_simulated_rig_and_leads_to_both_runs(recorded):
     with subprocess.Popen([script, *command], stdout=subprocess.PIPE, text=True) as process:
         try:
             assert process.stdout is not None
-            url, shown = READY.fullmatch(process.stdout.readline().strip()).groups()
+            ready = READY.fullmatch(process.stdout.readline().strip())
+            assert ready is not None
+            url, shown = ready.groups()
             assert shown == f"{ids[1]},{ids[0]}"
             state = json.load(urllib.request.urlopen(f"{url}/api/v1/state"))
             assert (state["rig"], state["simulated"]) == ("disarmed", True)

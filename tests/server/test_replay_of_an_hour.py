@@ -20,8 +20,8 @@ pytestmark = [pytest.mark.anyio, pytest.mark.exclusive]
 
 BEGINS_WITHIN = 1.0
 """From opening to the first tick and picture, s (issue 6)."""
-ANSWERS_WITHIN = 0.020
-"""Of half the requests, there and back, s: two a drawn frame of 60 Hz would be too slow to scrub through."""
+ANSWERS_WITHIN = 0.033
+"""Of half the requests, there and back, s: the page asks 30 times a second."""
 REQUESTS = 40
 OPENINGS = 2
 """The quicker one counts: other work on the computer only ever makes it slower."""
@@ -59,7 +59,7 @@ async def opening(there, id):
         overview = (await client.get(f"/runs/{id}/overview")).json()
     async with there.socket(f"/api/v1/replay?run={id}", max_size=None) as socket:
         await socket.recv()
-        tick = await asked(socket, 5.0)
+        tick = await asked(socket, 6.0)
         took = time.perf_counter() - began
     assert len(overview["series"]["time_s"]) <= MOST
     assert tick["run"]["id"] == id
@@ -70,7 +70,8 @@ async def asked(socket, at):
     """The tick of that time, with its picture taken off the line."""
     await socket.send(json.dumps({"at_s": at, "frame": True}))
     answer = json.loads(await socket.recv())
-    if answer["pictures"][0]["new"]:
+    [about] = answer["pictures"]
+    if about is not None and about["new"]:
         await socket.recv()
     return answer["ticks"][0]
 

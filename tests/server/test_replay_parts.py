@@ -100,6 +100,7 @@ def test_the_trail_holds_the_places_of_the_last_minute_and_none_of_the_future(at
 
 def test_a_recorded_robot_stands_in_the_scene_where_its_tick_says():
     robot = robot_of(TICK, course(), 3.0)
+    assert robot.pose is not None
     assert (robot.pose.x, robot.pose.y, robot.pose.heading) == pytest.approx((0.01, -0.02, math.pi / 2))
     assert robot.pivot == -1
     assert robot.body_tilt == pytest.approx(math.radians(5.0))

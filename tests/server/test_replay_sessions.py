@@ -3,6 +3,7 @@ import contextlib
 import json
 import struct
 import time
+from typing import Any
 
 import httpx
 import msgspec
@@ -63,6 +64,8 @@ async def rest(there):
 class Page:
     """What a page does with its replay socket."""
 
+    ready: dict[str, Any]
+
     def __init__(self, socket):
         self.socket = socket
 
@@ -89,6 +92,12 @@ async def replay(there, *ids):
         assert page.ready["type"] == "ready"
         yield page
     await until(lambda: sessions_of(there).find(page.ready["session"]) is None)
+
+
+def farewell(ended):
+    """Code and reason with which the server has closed a socket."""
+    assert ended.value.rcvd is not None
+    return ended.value.rcvd.code, ended.value.rcvd.reason
 
 
 def sessions_of(there):
@@ -183,8 +192,9 @@ async def test_a_replay_of_nothing_is_ended_with_the_reason(there, query, code, 
     async with there.socket(f"/api/v1/replay?{query}") as socket:
         with pytest.raises(ConnectionClosed) as ended:
             await socket.recv()
-    assert ended.value.rcvd.code == code
-    assert words in ended.value.rcvd.reason
+    given, reason = farewell(ended)
+    assert given == code
+    assert words in reason
 
 
 async def test_only_so_many_replays_are_open_at_once_and_each_ends_with_its_page(there):
@@ -194,8 +204,9 @@ async def test_only_so_many_replays_are_open_at_once_and_each_ends_with_its_page
         async with there.socket("/api/v1/replay?run=one") as seventh:
             with pytest.raises(ConnectionClosed) as ended:
                 await seventh.recv()
-        assert ended.value.rcvd.code == 4429
-        assert "close one" in ended.value.rcvd.reason
+        code, reason = farewell(ended)
+        assert code == 4429
+        assert "close one" in reason
     assert len(sessions_of(there)) == 0
     async with replay(there, "one") as page:
         assert (await page.ask(0.5))["type"] == "replay"
@@ -289,7 +300,7 @@ async def test_a_server_that_ends_takes_its_replays_with_it(walked, serve):
     assert len(replays) == 0
     with pytest.raises(ConnectionClosed) as ended:
         await socket.recv()
-    assert ended.value.rcvd.code == 1012
+    assert farewell(ended)[0] == 1012
     await viewer.close()
 
 
@@ -364,3 +375,18 @@ async def test_what_is_no_recording_is_said_to_be_none(rest, walked):
     assert (refused.status_code, gone.status_code) == (409, 404)
     assert "cannot be read" in refused.json()["detail"] or "no recording" in refused.json()["detail"]
     assert (await rest.get("/runs/nobody/overview")).status_code == 404
+
+
+async def test_the_curves_of_a_part_of_a_run_hold_every_tick_of_it(rest, walked):
+    _, seen = walked
+    begin = seen[0].time
+    answer = await rest.get("/runs/one/series", params={"start_s": 1.0, "end_s": 1.5})
+    series = answer.json()["series"]
+    within = [shot for shot in seen if 1.0 <= shot.time - begin <= 1.5]
+    recorded = [shot.pose.x * 1e3 for shot in within]
+    assert series["x_mm"][-len(recorded) :] == pytest.approx(recorded)
+    assert all(1.0 <= time <= 1.5 for time in series["time_s"])
+    for query in ({"start_s": 2.0, "end_s": 1.0}, {"start_s": 900.0}):
+        assert (await rest.get("/runs/one/series", params=query)).json() == {"series": {}}
+    assert (await rest.get("/runs/one/series", params={"end_s": "nan"})).status_code == 422
+    assert (await rest.get("/runs/none/series")).status_code == 404

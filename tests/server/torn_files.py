@@ -8,14 +8,17 @@ import struct
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import zstandard
 from mcap.exceptions import McapError
-from mcap.reader import NonSeekingReader
+from mcap.reader import NonSeekingReader, make_reader
+from mcap.records import Statistics
 from mcap_doctor import placed
 from recordings_bench import RecordingsBench, Walk
 
 from server.recording.reading import Recording, Unreadable
+from server.recording.tick_reading import Tick
 
 HUGE = (1 << 20, (1 << 31) - 1, 1 << 31, (1 << 32) - 1, 1 << 40, 1 << 62, (1 << 63) - 1, (1 << 64) - 1)
 """What a length field may claim."""
@@ -29,23 +32,52 @@ def small_recording(data: Path) -> Path:
     return data / "recordings" / f"{id}.mcap"
 
 
-def read_all(path: Path) -> list[dict] | None:
-    """Everything that a recording can be asked for; its ticks, or None for a file that is none."""
+def read_all(path: Path) -> list[Tick]:
+    """Everything that a recording can be asked for; its ticks, none for a file that is no recording."""
     try:
         with Recording.open(path) as recording:
             _ask(recording)
             return list(recording.ticks())
     except Unreadable:
-        return None
+        return []
 
 
-def newest_tick(path: Path) -> dict | None:
-    """The last tick of a recording, found without reading all of it."""
+def is_recording(path: Path) -> bool:
+    try:
+        Recording.open(path).close()
+    except Unreadable:
+        return False
+    return True
+
+
+def newest_tick(path: Path) -> Tick:
+    """The last tick of a recording, found without reading all of it; empty where there is none."""
     try:
         with Recording.open(path) as recording:
-            return recording.tick_at(recording.duration)
+            return recording.tick_at(recording.duration) or {}
     except Unreadable:
-        return None
+        return {}
+
+
+def outcome_of(path: Path) -> dict[str, Any]:
+    with Recording.open(path) as recording:
+        assert recording.outcome is not None
+        return recording.outcome
+
+
+def overview_of(path: Path) -> dict[str, Any]:
+    with Recording.open(path) as recording:
+        assert recording.overview is not None
+        return recording.overview
+
+
+def statistics_of(path: Path) -> Statistics:
+    """By the public reader, which seeks to the end for them."""
+    with path.open("rb") as file:
+        summary = make_reader(file, validate_crcs=True).get_summary()
+    assert summary is not None
+    assert summary.statistics is not None
+    return summary.statistics
 
 
 def ticks_by_public_reader(path: Path) -> int:

@@ -2,7 +2,7 @@
 import { Readings } from "../camera/camera.js";
 import { createPainter } from "../camera/painter.js";
 import { html, useEffect, useMemo, useRef, useState } from "../view.js";
-import { answer, onAnswer } from "./line.js";
+import { answer, look, onAnswer } from "./line.js";
 import { atTextPace, useTime } from "./player.js";
 import { recordedPictures } from "./pictures.js";
 import { mayHavePictures } from "./recording.js";
@@ -34,6 +34,14 @@ function Picture({ index, run, overlay, alone }) {
     painter.current = createPainter(canvas.current, source);
     return () => painter.current.close();
   }, [source]);
+  useEffect(() => {
+    const sight = new IntersectionObserver(([entry]) => look(index, entry.isIntersecting));
+    sight.observe(canvas.current);
+    return () => {
+      sight.disconnect();
+      look(index, true);
+    };
+  }, [index]);
   useEffect(() => painter.current.show({ view: "raw", overlay }), [source, overlay]);
   const label = `Recorded camera picture of ${run.name}, with the robot, its path and its target`;
   return html`

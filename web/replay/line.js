@@ -16,7 +16,9 @@ export const answer = { at_s: 0, ticks: [], pictures: null };
 const answerListeners = new Set();
 /** Index of a run -> hears of its pictures. */
 const pictureListeners = new Map();
-/** Index of a run -> its newest picture, which the server does not send twice; null where it is not shown. */
+/** Indices of runs whose pictures are scrolled away. */
+const outOfSight = new Set();
+/** Index of a run -> its newest picture, which the server does not send twice, and whether it is the one shown. */
 const pictures = new Map();
 
 let socket = null;
@@ -34,23 +36,31 @@ export function onAnswer(listener) {
 /** Pictures of one run, as {image: Blob or null when there is none at this time, about: what is known of it}. */
 export function onPicture(index, listener) {
   pictureListeners.set(index, listener);
-  if (pictures.has(index)) listener(pictures.get(index));
+  if (pictures.get(index)?.shown) listener(pictures.get(index));
   askAgain();
-  return () => pictureListeners.delete(index);
+  return () => pictureListeners.get(index) === listener && pictureListeners.delete(index);
 }
 
-const NO_PICTURE = { image: null, about: null, shown: false };
+/** Pictures that are out of sight need not come. */
+export function look(index, inSight) {
+  if (inSight) outOfSight.delete(index);
+  else outOfSight.add(index);
+  askAgain();
+}
+
+const NO_PICTURE = { image: null, about: null };
 
 /** What the newest answer says of a run's picture; a new one follows by itself. */
 function tellOfPicture(about, index) {
   const known = pictures.get(index);
-  if (about === null) showPicture(index, { ...known, shown: false }, NO_PICTURE);
-  else if (!about.new && known && !known.shown) showPicture(index, { ...known, shown: true });
+  if (about === null && known) known.shown = false;
+  if (about === null) pictureListeners.get(index)?.(NO_PICTURE);
+  else if (!about.new && known && !known.shown) showPicture(index, known);
 }
 
-function showPicture(index, kept, told = kept) {
-  pictures.set(index, kept);
-  pictureListeners.get(index)?.(told);
+function showPicture(index, picture) {
+  pictures.set(index, { ...picture, shown: true });
+  pictureListeners.get(index)?.(picture);
 }
 
 export function openLine(ids) {
@@ -92,7 +102,7 @@ const handlers = {
   replay({ at_s, ticks, pictures: abouts }) {
     waiting = false;
     Object.assign(answer, { at_s, ticks, pictures: abouts });
-    abouts?.forEach(tellOfPicture);
+    if (asked.frame) abouts?.forEach(tellOfPicture);
     for (const listener of answerListeners) listener(answer);
     ask();
   },
@@ -108,7 +118,7 @@ async function receivePicture(blob) {
   const header = new DataView(await blob.slice(0, HEADER_BYTES).arrayBuffer());
   const index = header.getUint32(0, true);
   const image = blob.slice(HEADER_BYTES, blob.size, "image/jpeg");
-  showPicture(index, { image, about: abouts?.[index] ?? null, shown: true });
+  showPicture(index, { image, about: abouts?.[index] ?? null });
 }
 
 /** The same time once more: somebody wants to see what was not asked for before. */
@@ -120,7 +130,7 @@ function askAgain() {
 function ask() {
   if (send === null || waiting) return;
   const at_s = now_s();
-  const frame = pictureListeners.size > 0;
+  const frame = [...pictureListeners.keys()].some((index) => !outOfSight.has(index));
   if (at_s === asked.at_s && frame === asked.frame) return;
   const rest = PERIOD_MS - (performance.now() - asked.at);
   if (rest > 0) {
