@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from control.backlash import ENGAGED_AFTER
-from control.field_model import FieldModel, Turn
+from control.field import Field, Turn
 from control.gait_model import GaitModel
 from control.model import PIVOT_A, PIVOT_B, Expectation, Measurement, Pivot, Pose, body_tilt, swing
 from control.pivot_filter import PivotFilter, moved
@@ -107,7 +107,7 @@ class Grip:
 class Estimator:
     """Feed it every frame: `expect` before the search, `correct` after it, `carry` for the pose now."""
 
-    def __init__(self, settings: EstimatorSettings, field: FieldModel, length: float) -> None:
+    def __init__(self, settings: EstimatorSettings, field: Field, length: float) -> None:
         self._settings = settings
         self._field = field
         self._length = length

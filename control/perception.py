@@ -12,7 +12,7 @@ from control.acceptance import without_nonsense
 from control.arbiter import PREDICT_FOR
 from control.backlash import Backlash
 from control.estimator import Estimator, EstimatorSettings
-from control.field_model import FieldModel
+from control.field import Field
 from control.model import Expectation, Frame, Measurement, Observation, Pose, Tracking, wrap
 from control.snapshot import ZERO, Covariance, Vector
 
@@ -40,7 +40,7 @@ class Perception:
     """What the rig knows of the robot; `look` at each frame, `pose_at` for the estimate."""
 
     def __init__(
-        self, tracker: Tracker, field: FieldModel, settings: EstimatorSettings, length: float, backlash: float
+        self, tracker: Tracker, field: Field, settings: EstimatorSettings, length: float, backlash: float
     ) -> None:
         """length: distance between the pivots, m.  backlash: first guess of the whole play, rad."""
         self._tracker = tracker

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import Literal
 
-from control.field_model import FieldTrace
+from control.field import FieldTrace
 from control.model import Observation, Pivot, Pose, Tracking
 
 Vector = tuple[float, float, float]

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from control.controllers import Law
-from control.field_model import FieldModel
+from control.field import Field
 from control.gait import Gait
 from control.gait_model import GaitModel
 from control.metrics import Metrics, MetricsTally
@@ -89,7 +89,7 @@ class Walk:
         self.request = replace(self.request, selection=selection)
 
     def step(
-        self, now: float, elapsed: float, pose: Pose, field: FieldModel, perception: Perception
+        self, now: float, elapsed: float, pose: Pose, field: Field, perception: Perception
     ) -> Stride:
         """One tick of `elapsed` seconds."""
         if not field.is_ready:

@@ -81,3 +81,12 @@ class LocalDisk:
 
     def free(self, folder: Path) -> int:
         return shutil.disk_usage(folder).free
+
+
+def sync_folder(folder: Path) -> None:
+    """Make a new file's name last."""
+    number = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
+    try:
+        os.fsync(number)
+    finally:
+        os.close(number)

@@ -133,7 +133,7 @@ class CornerPart(Part, frozen=True, kw_only=True):
 
 
 class FieldMessage(OfTick, frozen=True, kw_only=True):
-    """The field: what the currents make of it, how the host believes that it moves, and what the board says."""
+    """The field that the currents make, how the host believes that it moves, and what the board says."""
 
     field_mT: Annotated[Triple, quantity("field of the commanded currents at the robot, x, y, z", "mT", 3)]
     is_on: Annotated[bool, quantity("whether the board has been told to drive")]

@@ -22,6 +22,7 @@ from server.recording.contents import Contents, record_at
 from server.recording.finding import look_through
 from server.recording.foxglove import LEVELS
 from server.recording.mcap_format import Message, Opcode
+from server.recording.names import METADATA, OUTCOME, OVERVIEW, RECOVERED, SETTINGS
 from server.recording.tick_reading import Tick, TickReader
 from server.recording.timeline import ALWAYS, Timeline
 from server.recording.topics import CAMERA, EVENTS
@@ -29,10 +30,6 @@ from server.recording.topics import CAMERA, EVENTS
 NANO = 1_000_000_000
 """Nanoseconds of a second."""
 JSON = "json"
-OWN_METADATA = "pivotrig"
-RECOVERED = "pivotrig.recovered"
-"""The metadata record that a torn recording bears once it was recovered."""
-SETTINGS, OUTCOME, OVERVIEW = "settings.json", "outcome.json", "overview.json"
 SEVERITIES = {level: severity for severity, level in LEVELS.items()}
 FAR = 1e8
 """Seconds that a time within a recording may be asked for; three years."""
@@ -257,7 +254,7 @@ class Recording:
 
     def _metadata(self) -> dict[str, str]:
         for place in self._contents.metadata:
-            if place.name == OWN_METADATA:
+            if place.name == METADATA:
                 try:
                     return mcap.metadata(record_at(self._source, place, Opcode.METADATA))[1]
                 except Damaged:
@@ -268,9 +265,10 @@ class Recording:
         """The run's start, UTC in ns: as it was written, else the first message's."""
         try:
             began = datetime.fromisoformat(self.metadata.get("started_at", ""))
-            return round(began.timestamp() * 1e6) * 1000
+            written = round(began.timestamp() * 1e6) * 1000
         except (ValueError, OverflowError):
-            return self._timeline.start or 0
+            written = -1
+        return written if 0 <= written < ALWAYS else self._timeline.start or 0
 
 
 def _instant(log_time: int) -> datetime:

@@ -18,13 +18,13 @@ from server.recording.disk import DiskFile
 from server.recording.listing import REASON
 from server.recording.mcap_format import ChunkPlace, Cursor, Message, Opcode, Place
 from server.recording.mcap_writer import Index, McapWriter
-from server.recording.reading import NANO, OUTCOME, OVERVIEW, RECOVERED, Recording
+from server.recording.names import JSON, OUTCOME, OVERVIEW, RECOVERED
+from server.recording.reading import NANO, Recording
 from server.recording.recount import Recount, number
 from server.recording.tick_reading import BESIDE_TICKS, Tick
 from server.recording.topics import CAMERA
 from server.settings import MM, Robot
 
-JSON_FILE = "application/json"
 DEFAULT_LENGTH = Robot().length_mm
 """Between the pivots, mm, where a recording does not say."""
 
@@ -106,8 +106,8 @@ class Repair:
 
     def _finish(self) -> None:
         end = max((chunk.message_end_time for chunk in self._writer.summary.chunks), default=0)
-        self._writer.attach(OVERVIEW, JSON_FILE, msgspec.json.encode(self.recount.overview.as_json()), end)
-        self._writer.attach(OUTCOME, JSON_FILE, msgspec.json.encode(self.outcome), end)
+        self._writer.attach(OVERVIEW, JSON, msgspec.json.encode(self.recount.overview.as_json()), end)
+        self._writer.attach(OUTCOME, JSON, msgspec.json.encode(self.outcome), end)
         left_out, lost = str(self.left_out), str(self._source.size - self._contents.end)
         self._writer.describe(RECOVERED, {"records_left_out": left_out, "bytes_left_out": lost})
         self._writer.finish()

@@ -5,7 +5,6 @@ from __future__ import annotations
 import fcntl
 import json
 import math
-import os
 import time
 from pathlib import Path
 from typing import Any
@@ -19,9 +18,10 @@ from server.api.choices import selection_json
 from server.recording import foxglove
 from server.recording.clock import RunClock
 from server.recording.conditions import reference_points
-from server.recording.disk import Disk, DiskFile
+from server.recording.disk import Disk, DiskFile, sync_folder
 from server.recording.mcap_writer import McapWriter
 from server.recording.messages import OfTick, SelectionMessage
+from server.recording.names import JSON, METADATA, OUTCOME, OVERVIEW, SETTINGS
 from server.recording.pictures import Picture
 from server.recording.provenance import versions
 from server.recording.topics import CALIBRATION, CAMERA, EACH_TICK, EVENTS, SELECTION, TOPICS
@@ -33,9 +33,6 @@ SYNC = 1.0
 """The disk is waited for this often, s."""
 LARGEST_CHUNK = 4 << 20
 """Bytes; pictures of a large camera end a chunk before its time."""
-METADATA = "pivotrig"
-SETTINGS, OUTCOME, OVERVIEW = "settings.json", "outcome.json", "overview.json"
-JSON = "application/json"
 MEGA = 1e6
 
 
@@ -242,12 +239,3 @@ def _calibration(camera: CameraModel, clock: RunClock) -> foxglove.CameraCalibra
         R=(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0),
         P=(fx, 0.0, cx, 0.0, 0.0, fy, cy, 0.0, 0.0, 0.0, 1.0, 0.0),
     )
-
-
-def sync_folder(folder: Path) -> None:
-    """Make a new file's name last."""
-    number = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
-    try:
-        os.fsync(number)
-    finally:
-        os.close(number)

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any
 
-from control.field_model import Corner
+from control.field import Corner
 from control.model import Observation
 from control.snapshot import RunProgress, Snapshot
 from server.recording import foxglove

@@ -5,7 +5,8 @@ import random
 
 import pytest
 
-from control.field_model import Corner, FieldModel, FieldTrace
+from control.field import Corner, FieldTrace
+from control.field_model import FieldModel
 from control.model import PIVOT_A, PIVOT_B
 
 TILT = 0.4

@@ -7,7 +7,8 @@ import os
 import resource
 import signal
 import sqlite3
-from collections.abc import Callable
+import tempfile
+from collections.abc import Callable, Iterator
 from contextlib import closing
 from multiprocessing.synchronize import Barrier
 from pathlib import Path
@@ -194,14 +195,14 @@ def looked_at_by_nobody(data: Path) -> str:
 
 
 @pytest.fixture
-def foreign(tmp_path: Path):
-    """A data folder that everybody may read and nobody else may write to, wherever it lies."""
-    folder = tmp_path / "data"
-    folder.mkdir()
-    for parent in [folder, *list(folder.parents)[:3]]:
-        parent.chmod(0o755)
-    yield folder
-    folder.chmod(0o755)
+def foreign() -> Iterator[Path]:
+    """A data folder that everybody may read and nobody else may write to; pytest's own lie where nobody may look."""
+    with tempfile.TemporaryDirectory() as parent:
+        folder = Path(parent, "data")
+        folder.mkdir(mode=0o755)
+        Path(parent).chmod(0o755)
+        yield folder
+        folder.chmod(0o755)
 
 
 @pytest.mark.parametrize("still_open", [False, True])

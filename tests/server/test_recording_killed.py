@@ -82,6 +82,7 @@ def mortal(tmp_path):
     program.close()
 
 
+@pytest.mark.timeout(1200)
 def test_a_run_killed_at_any_moment_loses_at_most_a_second_and_a_quarter(mortal, tmp_path, full):
     chance, folder = random.Random(), tmp_path / "recordings"
     lost, ticks = [], {}

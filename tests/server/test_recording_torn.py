@@ -1,14 +1,26 @@
 """A recording that was cut or damaged anywhere: what is whole is read, and nothing else happens."""
 
+import os
 import random
+import shutil
 import time
 import tracemalloc
+from pathlib import Path
 
 import pytest
 from mcap.records import Chunk
 from mcap_doctor import placed
 from recordings_bench import RecordingsBench, Walk
-from torn_files import HUGE, damaged, is_recording, newest_tick, read_all, small_recording, with_lengths
+from torn_files import (
+    HUGE,
+    damaged,
+    is_recording,
+    newest_tick,
+    read_all,
+    small_recording,
+    ticks_of,
+    with_lengths,
+)
 
 SMALL = 100_000
 """Bytes of the file that is cut at every offset: settings and schemas of a whole recording are 60 kB already."""
@@ -49,35 +61,44 @@ def ticks_before(ends, cut):
     return max((ticks for end, ticks in ends if end <= cut), default=0)
 
 
-def check_cut(whole, ends, data, cut, path):
+def check_cut(whole, ends, path, cut, read):
     """Exactly the ticks of the chunks before the cut are read."""
-    path.write_bytes(data[:cut])
+    os.truncate(path, cut)
     began = time.monotonic()
-    found = read_all(path)
+    found = read(path)
     assert time.monotonic() - began < READ_WITHIN
     assert found == whole[: ticks_before(ends, cut)], f"cut at {cut}"
 
 
+def every(step, size):
+    """Places to cut at, from the end of a file to its beginning."""
+    return range(size - 1, -1, -step)
+
+
+@pytest.mark.timeout(1200)
 def test_a_file_cut_anywhere_keeps_every_chunk_before_the_cut(small, tmp_path, full):
-    whole, data, ends = read_all(small), small.read_bytes(), ends_of_chunks(small)
+    whole, ends, path = read_all(small), ends_of_chunks(small), copied(small, tmp_path)
     assert len(whole) == ends[-1][1] > 20
-    for cut in range(0, len(data), 1 if full else 401):
-        check_cut(whole, ends, data, cut, tmp_path / "cut.mcap")
+    for cut in every(1 if full else 401, small.stat().st_size):
+        check_cut(whole, ends, path, cut, read_all if cut % 50 == 0 else ticks_of)
 
 
 def test_a_file_cut_around_the_end_of_each_chunk_keeps_it_once_it_is_whole(small, tmp_path):
-    whole, data, ends = read_all(small), small.read_bytes(), ends_of_chunks(small)
-    for end, _ in ends:
-        for cut in (end - 1, end, end + 1):
-            check_cut(whole, ends, data, cut, tmp_path / "cut.mcap")
+    whole, ends, path = read_all(small), ends_of_chunks(small), copied(small, tmp_path)
+    for end, _ in reversed(ends):
+        for cut in (end + 1, end, end - 1):
+            check_cut(whole, ends, path, cut, read_all)
+
+
+def copied(path, folder):
+    return Path(shutil.copy(path, folder / "cut.mcap"))
 
 
 def test_a_long_file_cut_anywhere_ends_with_the_last_whole_chunk(long, tmp_path, full):
-    whole, data, ends = read_all(long), long.read_bytes(), ends_of_chunks(long)
-    path, chance = tmp_path / "cut.mcap", random.Random(24)
-    for _ in range(1000 if full else 100):
-        cut = chance.randrange(len(data))
-        path.write_bytes(data[:cut])
+    whole, ends, path = read_all(long), ends_of_chunks(long), copied(long, tmp_path)
+    chance, size = random.Random(24), long.stat().st_size
+    for cut in sorted((chance.randrange(size) for _ in range(1000 if full else 100)), reverse=True):
+        os.truncate(path, cut)
         ticks = ticks_before(ends, cut)
         assert newest_tick(path) == (whole[ticks - 1] if ticks else {}), f"cut at {cut}"
 

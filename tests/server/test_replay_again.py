@@ -108,7 +108,8 @@ async def test_another_path_of_that_name_is_not_taken_for_it(rest):
 def outcome_of(data, id):
     with Recording.open(data / "recordings" / f"{id}.mcap") as recording:
         outcome, last = recording.outcome, recording.tick_at(recording.duration)
-    assert outcome is not None and last is not None
+    assert outcome is not None
+    assert last is not None
     return outcome["metrics"], last
 
 

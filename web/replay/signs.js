@@ -5,11 +5,12 @@ import { html } from "../view.js";
 /** On every card that shows a recording, so that nobody takes it for the rig. */
 export const Badge = () => html`<span class="badge replay-badge">Replay</span>`;
 
-/** "0:07.4", "12:05.0". */
-export function stamp(seconds) {
-  const tenths = Math.round(Math.max(0, seconds) * 10);
-  const rest = String(Math.floor(tenths / 10) % 60).padStart(2, "0");
-  return `${Math.floor(tenths / 600)}:${rest}.${tenths % 10}`;
+/** "0:07.4", "12:05.0"; digits: after the seconds, at least one. */
+export function stamp(seconds, digits = 1) {
+  const parts = 10 ** digits;
+  const count = Math.round(Math.max(0, seconds) * parts);
+  const whole = Math.floor(count / parts);
+  return `${Math.floor(whole / 60)}:${String(whole % 60).padStart(2, "0")}.${String(count % parts).padStart(digits, "0")}`;
 }
 
 /** "0.25×", "2×". */

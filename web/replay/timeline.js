@@ -1,10 +1,10 @@
 /** What the charts draw of recorded runs: each on the time since its own start, with the time of the replay. */
 import uPlot from "/static/vendor/uplot/uPlot.esm.js";
 import { get } from "../store.js";
+import { clock } from "../units.js";
 import { now_s, onTextTime, onTime, seek, zoomOut, zoomTo } from "./player.js";
 import { indexAt } from "./recording.js";
 import { stamp } from "./signs.js";
-import { clock } from "../units.js";
 
 /** A drag shorter than this is a click, CSS px. */
 const CLICK_PX = 4;
@@ -35,9 +35,16 @@ export function wholeRun(runs) {
         forget();
       };
     },
-    timeAxis: { values: (_, splits) => splits.map(splits.every(Number.isInteger) ? clock : stamp) },
+    timeAxis: { values: (_, splits) => splits.map(wordsFor(splits)) },
     attach: (plot) => attach(plot, () => pointed.forEach((listener) => listener())),
   };
+}
+
+/** As many digits as tell the marks of an axis apart. */
+function wordsFor(splits) {
+  if (splits.every(Number.isInteger)) return clock;
+  const digits = splits.every((time) => Math.abs(time * 10 - Math.round(time * 10)) < 1e-6) ? 1 : 2;
+  return (time) => stamp(time, digits);
 }
 
 /** [times, values…], one a curve, in the order of the curves. */

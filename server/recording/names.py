@@ -1,0 +1,10 @@
+"""What stands in a recording beside its topics, by name."""
+
+METADATA = "pivotrig"
+"""The metadata record that says in words what the file is."""
+RECOVERED = "pivotrig.recovered"
+"""The metadata record that a torn recording bears once it was recovered."""
+SETTINGS, OUTCOME, OVERVIEW = "settings.json", "outcome.json", "overview.json"
+"""The attachments: under which conditions the run was made, how it ended, and its charts at a glance."""
+JSON = "application/json"
+"""Media type of the attachments."""
