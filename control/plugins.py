@@ -25,6 +25,8 @@ GROUPS: dict[str, tuple[Registry[Any], str]] = {
 }
 """Entry-point groups, the registry of each, and the method that its classes need."""
 
+MODULES = "pivotrig_plugin_"
+"""How the modules that are made of plug-in files begin."""
 _numbers = itertools.count(1)
 
 
@@ -36,13 +38,19 @@ def load_file(path: Path) -> tuple[str, ...]:
     """Run a Python file that registers its classes; returns their names, raises `PluginError`."""
     if not path.is_file():
         raise PluginError(f"there is no plug-in file {path}; give the path of a .py file")
-    name = f"pivotrig_plugin_{next(_numbers)}_{path.stem}"
+    name = f"{MODULES}{next(_numbers)}_{path.stem}"
     spec = importlib.util.spec_from_file_location(name, path)
     if spec is None or spec.loader is None:
         raise PluginError(f"the plug-in {path} is not a Python file; its name must end in .py")
     loader, module = spec.loader, importlib.util.module_from_spec(spec)
     sys.modules[name] = module
     return _guarded(str(path), lambda: loader.exec_module(module), str(path))
+
+
+def loaded_files() -> list[Path]:
+    """The plug-in files that were run, for a process that has to know the same names."""
+    modules = [module for name, module in sys.modules.items() if name.startswith(MODULES)]
+    return [Path(module.__file__) for module in modules if module.__file__ is not None]
 
 
 def load_installed() -> list[PluginError]:

@@ -28,6 +28,7 @@ from server.api import (
     ports,
     problems,
     replay,
+    retrack,
     rig_file,
     run_catalogue,
     runs,
@@ -47,6 +48,7 @@ from server.exports.work import Workshop
 from server.fresh_files import ALWAYS_ASK, FreshFiles
 from server.pictures import Pictures
 from server.replay.sessions import ReplaySessions
+from server.retrack.desk import RetrackDesk
 from server.scene_feed import SceneFeed
 from server.scene_live import LiveView
 from server.scene_routes import add_scene_routes
@@ -81,6 +83,7 @@ ROOMS = (
     run_catalogue,
     overview,
     again,
+    retrack,
     exports,
     camera,
     cameras,
@@ -122,6 +125,7 @@ def create_app(
     app.state.scene = SceneFeed(rig.updates, LiveView(rig))
     app.state.replays = ReplaySessions()
     app.state.workshop = Workshop()
+    app.state.retracks = RetrackDesk()
     app.add_middleware(Door, hosts=hosts)
     problems.install(app)
     add_routes(app)
@@ -147,6 +151,7 @@ async def lifespan(app: FastAPI) -> AsyncIterator[None]:
         finally:
             written = asyncio.create_task(asyncio.to_thread(archive.recorder.close), name="last recording")
             await app.state.calibration_runs.stop()
+            await app.state.retracks.stop()
             if changes is not None:
                 await changes.stop()
             end_streams(app)

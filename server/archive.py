@@ -33,7 +33,9 @@ class Archive:
         patient: the recorder is waited for, as by a simulated run that goes as fast as it can.
         """
         folder = data / RECORDINGS
-        with contextlib.suppress(OSError):  # where nothing can be written, what is there can still be looked at
+        with contextlib.suppress(
+            OSError
+        ):  # where nothing can be written, what is there can still be looked at
             folder.mkdir(parents=True, exist_ok=True)
         catalogue = Catalogue.open(data)
         return cls(folder, catalogue, Recorder(folder, catalogue, patient=patient))

@@ -26,7 +26,7 @@ pytestmark = pytest.mark.exclusive
 
 LOST_AT_MOST = 1.25
 """s of rig time between the last tick that was walked and the last one that is in the file."""
-WALKS_FOR = 2.5
+WALKS_FOR = 1.5
 """At most so long, s, before it is killed."""
 PATIENCE = 60.0
 

@@ -3,6 +3,7 @@
 import fcntl
 import multiprocessing
 import os
+import random
 import signal
 from dataclasses import replace
 
@@ -221,14 +222,30 @@ def _recover_with_little_room(torn):
     assert "File too large" in str(done)
 
 
-def test_a_recovery_that_is_killed_at_any_moment_changes_nothing(archive, torn, full):
+def test_a_recovery_that_is_killed_while_it_copies_changes_nothing(archive, torn, full):
     data, ticks = torn.read_bytes(), read_all(torn)
-    for attempt in range(20 if full else 3):
-        torn.write_bytes(data)
-        assert _in_child(_die_at, torn, attempt * 5) == -signal.SIGKILL
+    for chunk in range(0, 12, 1 if full else 5):
+        assert _in_child(_die_at, torn, chunk) == -signal.SIGKILL
         assert torn.read_bytes() == data
     recover(archive.folder, archive.catalogue)
     assert read_all(torn) == ticks
+    assert [path.name for path in archive.folder.iterdir()] == [torn.name]
+
+
+def test_a_recovery_that_is_killed_at_any_moment_leaves_the_torn_file_or_the_whole_one(archive, torn, full):
+    data, ticks, chance = torn.read_bytes(), read_all(torn), random.Random()
+    for _ in range(50 if full else 3):
+        torn.write_bytes(data)
+        child = multiprocessing.get_context("fork").Process(target=_die_at, args=(torn, 1000))
+        child.start()
+        child.join(chance.uniform(0.0, 0.15))
+        child.kill()
+        child.join()
+        with Recording.open(torn) as recording:
+            assert recording.is_whole or torn.read_bytes() == data
+        assert read_all(torn) == ticks
+    recover(archive.folder, archive.catalogue)
+    assert archive.catalogue.get(torn.stem).recording_state == "recovered"
     assert [path.name for path in archive.folder.iterdir()] == [torn.name]
 
 
