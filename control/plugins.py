@@ -49,7 +49,7 @@ def load_file(path: Path) -> tuple[str, ...]:
 
 def loaded_files() -> list[Path]:
     """The plug-in files that were run, for a process that has to know the same names."""
-    modules = [module for name, module in sys.modules.items() if name.startswith(MODULES)]
+    modules = [module for name, module in list(sys.modules.items()) if name.startswith(MODULES)]
     return [Path(module.__file__) for module in modules if module.__file__ is not None]
 
 

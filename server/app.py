@@ -137,7 +137,11 @@ async def lifespan(app: FastAPI) -> AsyncIterator[None]:
     """The rig stops before everything else does, and whatever else fails: its stop zeroes the coils."""
     rig, scene, changes = app.state.rig, app.state.scene, app.state.rig_changes
     archive, upkeep = app.state.archive, Upkeep(app.state.archive, rig)
-    await rig.start()
+    try:
+        await rig.start()
+    except BaseException:
+        await asyncio.to_thread(archive.close)
+        raise
     try:
         upkeep.start()
         await app.state.pictures.start()
@@ -150,16 +154,18 @@ async def lifespan(app: FastAPI) -> AsyncIterator[None]:
             await rig.stop()
         finally:
             written = asyncio.create_task(asyncio.to_thread(archive.recorder.close), name="last recording")
-            await app.state.calibration_runs.stop()
-            await app.state.retracks.stop()
-            if changes is not None:
-                await changes.stop()
-            end_streams(app)
-            await scene.stop()
-            app.state.pictures.close()
-            await upkeep.stop()
-            await written
-            await asyncio.to_thread(archive.close)
+            try:
+                await app.state.calibration_runs.stop()
+                await app.state.retracks.stop()
+                if changes is not None:
+                    await changes.stop()
+                end_streams(app)
+                await scene.stop()
+                app.state.pictures.close()
+                await upkeep.stop()
+            finally:
+                await written
+                await asyncio.to_thread(archive.close)
 
 
 async def start_scene(scene: SceneFeed) -> None:

@@ -64,14 +64,13 @@ class Headless:
     def run(self, id: str, request: RunRequest, *, consent: bool = False) -> HeadlessRun:
         """As `run_headless`; also raises `Refused` where the run could not be recorded."""
         started, begin = time.perf_counter(), self._machine.camera.now()
-        run = Run(id, request, RunState.RUNNING, datetime.now(UTC))
         try:
             self._machine.open()
             self._recording.check(self._machine)
             self._until_ready()
             self._loop.arm(request.selection.gait, consent=consent)
             self._loop.start(id, request)
-            self._recording.begin(self._machine, run)
+            self._recording.begin(self._machine, Run(id, request, RunState.RUNNING, datetime.now(UTC)))
             ended = self._walk()
             self._loop.disarm("run finished")
             self._tick()

@@ -30,8 +30,6 @@ if TYPE_CHECKING:
 
 ESTOP_ANSWER = 0.5
 """An emergency stop is answered after this long at the latest, s; the coils have been stopped at once."""
-DISK_ANSWERS = 3.0
-"""A disk that takes longer to make an empty file is in no state to be recorded to, s."""
 TURN_WITHIN = 10.0
 """A tick, or an exchange of the machine with a slow camera, is over after this long, s."""
 
@@ -77,25 +75,15 @@ class Rig(RigLife):
         await self._ask(lambda: self._loop.jog(jog))
 
     async def start_run(self, request: RunRequest) -> Run:
-        run = Run(new_id(), request, RunState.RUNNING, datetime.now(UTC))
-        await self._require_recording()
-        await self._ask(lambda: self._start(run))
-        return self.runs.of(run.id)
+        id = new_id()
+        await asyncio.to_thread(self._recording.check, self._machine)
+        await self._ask(lambda: self._start(id, request))
+        return self.runs.of(id)
 
-    async def _require_recording(self) -> None:
-        """Raises `Refused` where the run could not be recorded; a disk that hangs holds up no tick."""
-        try:
-            async with asyncio.timeout(DISK_ANSWERS):
-                await asyncio.to_thread(self._recording.check, self._machine)
-        except TimeoutError:
-            raise Refused(
-                f"the folder of the recordings has not answered for {DISK_ANSWERS:.0f} s; see to its disk, or switch "
-                "recording off in the rig file"
-            ) from None
-
-    def _start(self, run: Run) -> None:
+    def _start(self, id: str, request: RunRequest) -> None:
         """On the rig's thread: the run is listed from the instant at which it may also end."""
-        self._loop.start(run.id, run.request)
+        self._loop.start(id, request)
+        run = Run(id, request, RunState.RUNNING, datetime.now(UTC))
         self._recording.begin(self._machine, run)
         self._trail.clear()
         self.runs.start(run)
@@ -190,6 +178,7 @@ class Rig(RigLife):
         if not self._lost:
             require_disarmed(self._loop.state)
             self._stops_before_exchange = self._stops
+        self._recording.leave()
         done = exchange(self._machine, settings, self._build)
         self._machine, self._loop = done.machine, done.machine.loop
         if self._stops != self._stops_before_exchange:  # a stop that found no machine holds for the new one

@@ -81,5 +81,5 @@ class RunList:
 
 
 def new_id() -> str:
-    """Sorts by time, reads well, never repeats."""
-    return f"{datetime.now(UTC):%Y%m%d-%H%M%S}-{secrets.token_hex(2)}"
+    """Sorts by time, reads well, and is another one in every program that starts a run in the same second."""
+    return f"{datetime.now(UTC):%Y%m%d-%H%M%S}-{secrets.token_hex(4)}"

@@ -16,6 +16,7 @@ from control.news import Announcement, Ended
 from control.runs import Run, RunState, Selection
 from control.snapshot import NOT_RECORDED, RecordingStatus, Snapshot
 from server.recording.conditions import conditions_of
+from server.recording.disk_answer import DiskAnswer
 
 if TYPE_CHECKING:
     from server.assembly import Machine
@@ -36,6 +37,7 @@ class RunRecording:
 
     def __init__(self, recorder: Recorder | None) -> None:
         self._recorder = recorder
+        self._disk_answer = DiskAnswer()
         self._run: Run | None = None
         self._is_kept = False
         self._broken = ""
@@ -47,11 +49,13 @@ class RunRecording:
         self._hand_over(lambda recorder: recorder.start())
 
     def check(self, machine: Machine) -> None:
-        """Before anything moves; raises `Refused` where the run could not be recorded."""
-        if self._recorder is None:
+        """Before anything moves; raises `Refused` where the run could not be recorded. Blocks for some seconds where
+        a disk does not answer."""
+        recorder, settings = self._recorder, machine.settings.recording
+        if recorder is None:
             return
-        self._recorder.disk = machine.disk
-        self._recorder.check(machine.settings.recording)
+        recorder.disk = machine.disk
+        self._disk_answer.wait_for(lambda: recorder.check(settings))
 
     def begin(self, machine: Machine, run: Run) -> None:
         self._frames_told = False
@@ -94,9 +98,18 @@ class RunRecording:
         if self._run is not None:
             self._end(replace(self._run, state=RunState.ABORTED, reason=reason))
 
+    def leave(self) -> None:
+        """The rig becomes another one; what is still recorded of the last run ends with this one."""
+        self._hand_over(lambda recorder: recorder.finish())
+
     def _end(self, run: Run) -> None:
+        """A recorder with a mistake is asked all the same, for what it has; it is told of no more ticks."""
         self._run = None
+        broken, self._broken = self._broken, ""
         self._hand_over(lambda recorder: recorder.end(run))
+        if broken:
+            self._hand_over(lambda recorder: recorder.finish())
+        self._broken = broken or self._broken
 
     @property
     def _failure(self) -> str:

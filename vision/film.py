@@ -93,8 +93,11 @@ class Film:
 
 @contextmanager
 def film_file(path: Path) -> Iterator[Film]:
-    """A film in a file, its index in front, so that a browser can start to play before it has all of it."""
-    with _opened(str(path), {"movflags": "+faststart"}) as film:
+    """A film in a file, its index in front, so that a browser can start to play before it has all of it.
+
+    By the whole path: of a name alone FFmpeg would take what stands before a colon for a protocol.
+    """
+    with _opened(str(path.absolute()), {"movflags": "+faststart"}) as film:
         yield film
 
 

@@ -18,6 +18,8 @@ log = logging.getLogger(__name__)
 
 STALLED = 60.0
 """A client that takes nothing for this long has given up, s."""
+GOING_DOWN = Problem(503, "Going down", "The server is going down; ask again when it is back.")
+"""For an export that was to begin; a client that has gone does not hear it."""
 
 
 class Download(Response):
@@ -36,9 +38,12 @@ class Download(Response):
         self._workshop = workshop
         self._job = job
         self._over = over
+        self._begun = False
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         await until_first_ends(self._deliver(scope, receive, send), _gone(receive), self._server_ends())
+        if not self._begun:
+            await GOING_DOWN.response()(scope, receive, send)
 
     async def _server_ends(self) -> None:
         await self._over()
@@ -48,15 +53,19 @@ class Download(Response):
             try:
                 first = await anext(pieces, b"")
             except ExportError as error:
+                self._begun = True
                 await Problem(409, "Cannot be exported", str(error)).response()(scope, receive, send)
                 return
             try:
                 await self._send(first, pieces, send)
-            except (ExportError, TimeoutError) as error:
+            except ExportError as error:
                 # The answer has begun: only an end that is not one tells the client that something is missing.
                 log.error("the export of %s as %s broke off: %s", self._job.path, self._job.format, error)
+            except TimeoutError:
+                log.info("a client took nothing of a %s for %g s and was dropped", self._job.format, STALLED)
 
     async def _send(self, first: bytes, pieces: AsyncIterator[bytes], send: Send) -> None:
+        self._begun = True
         await send({"type": "http.response.start", "status": 200, "headers": self.raw_headers})
         await _in_time(send, first)
         async for piece in pieces:

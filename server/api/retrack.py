@@ -7,13 +7,14 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import msgspec
 from fastapi import APIRouter, Depends, Request, Response
-from pydantic import Field
+from pydantic import Field, JsonValue
 
 from control.runs import Choice
-from server.api.access import TheRig
+from server.api.access import TheArchive, TheRig
 from server.api.body import StrictRoute
 from server.api.exports import Finished, TheFinished
 from server.api.problems import Problem, Rejected, not_found
+from server.api.recorded import record_of
 from server.api.schemas import ChoiceBody, Edge
 from server.retrack.changes import Changes, RetrackError, changed_rig, rig_then
 from server.retrack.desk import Busy, Job, RetrackDesk
@@ -41,8 +42,8 @@ class RetrackBody(Edge):
     """
 
     rig: Literal["then", "now"] = "then"
-    vision: dict[str, Any] = {}
-    estimator: dict[str, Any] = {}
+    vision: dict[str, JsonValue] = Field(default_factory=dict)
+    estimator: dict[str, JsonValue] = Field(default_factory=dict)
     controller: ChoiceBody | None = None
     estimate: Literal["recorded", "again"] = "recorded"
 
@@ -51,7 +52,7 @@ class RetrackBody(Edge):
         return Changes(
             vision=self.vision,
             estimator=self.estimator,
-            rig=rig.settings.model_dump(mode="json") if self.rig == "now" else None,
+            rig=rig.settings.to_public() if self.rig == "now" else None,
             controller=None if asked is None else Choice(asked.name, asked.parameters),
             estimate=self.estimate,
         )
@@ -88,30 +89,24 @@ def _check(finished: Finished, changes: Changes) -> None:
 
 
 @router.get("/runs/{run_id}/retrack", response_class=Response)
-async def look(run_id: RunId, desk: TheDesk) -> Response:
-    """How far it is, and in the end the comparison, and curves in at most 2 000 points."""
-    return Response(msgspec.json.encode(_job_json(_job(desk, run_id))), media_type="application/json")
+async def look(run_id: RunId, archive: TheArchive, desk: TheDesk) -> Response:
+    """How far it is, and in the end the comparison, and curves in at most 2 000 points; stage "none": never asked."""
+    run = await asyncio.to_thread(record_of, archive, run_id)
+    return _answer(desk.of(run.id) or Job(0, run.id, stage="none"))
 
 
 @router.delete("/runs/{run_id}/retrack", response_class=Response)
 async def cancel(run_id: RunId, desk: TheDesk) -> Response:
     """End it, or forget what came of it; nothing is left."""
-    job = await desk.cancel(_job(desk, run_id).run)
-    return Response(msgspec.json.encode(_job_json(job)), media_type="application/json")
-
-
-def _job(desk: RetrackDesk, run_id: str) -> Job:
-    job = desk.of(run_id)
+    job = await desk.cancel(run_id)
     if job is None:
         raise not_found(f"The run {run_id[:80]!a} has not been looked at again since the server was started.")
-    return job
+    return _answer(job)
 
 
-def _job_json(job: Job | None) -> dict[str, Any]:
-    if job is None:
-        return {}
+def _answer(job: Job) -> Response:
     result = job.result
-    return {
+    content = {
         "job": job.id,
         "run": job.run,
         "stage": job.stage,
@@ -121,3 +116,4 @@ def _job_json(job: Job | None) -> dict[str, Any]:
         "comparison": None if result is None else result.comparison,
         "series": None if result is None else result.series,
     }
+    return Response(msgspec.json.encode(content), media_type="application/json")

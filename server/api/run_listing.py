@@ -89,7 +89,8 @@ def page_json(rig: Rig, archive: Archive, asked: Asked) -> dict[str, Any]:
     }
 
 
-def _found(rig: Rig, catalogue: Catalogue, session: Sequence[Run], asked: Asked) -> tuple[Page, Totals]:
+def _found(rig: Rig, catalogue: Catalogue, session: list[Run], asked: Asked) -> tuple[Page, Totals]:
+    forget_deleted(rig, catalogue, session)
     known = catalogue.known([run.id for run in session])
     page = catalogue.page(
         asked.query, asked.cursor, asked.limit
@@ -97,6 +98,13 @@ def _found(rig: Rig, catalogue: Catalogue, session: Sequence[Run], asked: Asked)
     known |= {run.id for run in page.runs}
     waiting = _matching(rig, [run for run in session if run.id not in known], asked.query)
     return joined(page, waiting, asked.cursor, asked.limit), catalogue.totals()
+
+
+def forget_deleted(rig: Rig, catalogue: Catalogue, session: list[Run]) -> None:
+    """Take off both lists what another program has deleted; raises `CatalogueError`."""
+    for id in catalogue.gone([run.id for run in session]):
+        if rig.runs.forget(id):
+            session[:] = [run for run in session if run.id != id]
 
 
 def _of_session(rig: Rig, session: Sequence[Run], asked: Asked) -> tuple[Page, Totals]:
@@ -131,6 +139,7 @@ def one_json(rig: Rig, archive: Archive, id: str) -> dict[str, Any]:
     try:
         record = archive.catalogue.get(id)
     except NoSuchRun:
+        forget_deleted(rig, archive.catalogue, session)
         run = next((run for run in session if run.id == id), None)
         if run is None:
             raise

@@ -20,8 +20,6 @@ from server.catalogue.words import primary_code
 
 BUSY = 3.0
 """How long a write waits for another program's, s; none of ours takes longer than some 10 ms."""
-MAPPED = 256 << 20
-"""Bytes of the file that are read without being copied: the whole index of some 100 000 runs."""
 FOR_WRITING = {"writes": True}
 """Execution options of a connection that will write: it takes its place at once, instead of failing half-way."""
 OUT_OF_REACH = (sqlite3.SQLITE_READONLY, sqlite3.SQLITE_CANTOPEN, sqlite3.SQLITE_PERM, sqlite3.SQLITE_AUTH)
@@ -66,15 +64,18 @@ def connect(path: Path, access: Access) -> sqlite3.Connection:
     return sqlite3.connect(place, uri=True, timeout=BUSY, check_same_thread=False, isolation_level=None)
 
 
-def engine_of(path: Path, access: Access) -> Engine:
-    """Each thread that asks has a connection of its own."""
+def engine_of(path: Path, access: Access, *, references: bool = True) -> Engine:
+    """Each thread that asks has a connection of its own. Its file is not mapped: a disk that goes would end us.
+
+    references: rows that belong to another go with it. Not while tables are rebuilt: SQLite empties those first.
+    """
     engine = create_engine(
         "sqlite://",
         creator=partial(connect, path, access),
         poolclass=NullPool if access is Access.NOTHING else QueuePool,
         json_serializer=_json,
     )
-    event.listen(engine, "connect", partial(_set_up, access))
+    event.listen(engine, "connect", partial(_set_up, access, references))
     event.listen(engine, "begin", _begin)
     return engine
 
@@ -83,14 +84,13 @@ def _json(value: Any) -> str:
     return json.dumps(value, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
 
 
-def _set_up(access: Access, connection: sqlite3.Connection, _: ConnectionPoolEntry) -> None:
+def _set_up(access: Access, references: bool, connection: sqlite3.Connection, _: ConnectionPoolEntry) -> None:
     if access is Access.WRITE:
         connection.execute("PRAGMA journal_mode = WAL")
     if access is Access.NOTHING:
         _make_tables(connection)
     connection.execute("PRAGMA synchronous = NORMAL")
-    connection.execute("PRAGMA foreign_keys = ON")
-    connection.execute(f"PRAGMA mmap_size = {MAPPED}")
+    connection.execute(f"PRAGMA foreign_keys = {'ON' if references else 'OFF'}")
     if access is not Access.WRITE:
         connection.execute("PRAGMA query_only = ON")
 

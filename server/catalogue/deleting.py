@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 from pathlib import Path
 
-from server.catalogue.errors import CatalogueError, NotNow
+from server.catalogue.errors import CatalogueError, NoSuchRun, NotNow
 from server.catalogue.records import RunRecord
-from server.catalogue.shelf import EDITS, RECORDING, TORN, Shelf, file_of
+from server.catalogue.shelf import EDITS, RECORDING, TORN, WALKING, Shelf, file_of
 
 
 def delete_run(shelf: Shelf, id: str) -> RunRecord:
@@ -20,7 +21,7 @@ def delete_run(shelf: Shelf, id: str) -> RunRecord:
             f"the recording of run {id} cannot be deleted: {error.strerror}; "
             "give yourself the right to write to its folder"
         ) from error
-    shelf.catalogue.delete(id)
+    _remove_row(shelf, id)
     return record
 
 
@@ -40,10 +41,16 @@ def finish_deletions(shelf: Shelf) -> int:
             _remove_files(shelf.folder, id)
         except OSError as error:
             raise CatalogueError(f"the recording of run {id} cannot be deleted: {error.strerror}") from error
-        shelf.catalogue.delete(id)
+        _remove_row(shelf, id)
     return len(hidden)
 
 
+def _remove_row(shelf: Shelf, id: str) -> None:
+    """Another program may have finished this deletion meanwhile."""
+    with contextlib.suppress(NoSuchRun):
+        shelf.catalogue.delete(id)
+
+
 def _remove_files(folder: Path, id: str) -> None:
-    for kind in (EDITS, TORN, RECORDING):
+    for kind in (EDITS, TORN, WALKING, RECORDING):
         file_of(folder, id, kind).unlink(missing_ok=True)

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
+import fcntl
 import os
 import sqlite3
 import time
+from collections.abc import Iterator
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
@@ -70,16 +73,35 @@ def _opened_in_turn(path: Path) -> Opened:
 
 def _opened_anew(path: Path) -> Opened:
     """A broken catalogue is kept under another name, for whoever wants to look at it."""
-    aside = path.with_name(f"{NAME}.broken-{datetime.now():%Y%m%d-%H%M%S}")
     try:
-        for side in ("", *SIDE_FILES):
-            if os.path.exists(f"{path}{side}"):
-                os.replace(f"{path}{side}", f"{aside}{side}")
-        fresh = _opened(path)
+        with _alone(path.parent):
+            return _exchanged(path)
     except (OSError, NotACatalogue, sqlite3.Error, SQLAlchemyError) as error:
         raise CatalogueError(
             f"the catalogue {path} is damaged and cannot be put aside ({error}); choose another folder with --data"
         ) from error
+
+
+@contextlib.contextmanager
+def _alone(folder: Path) -> Iterator[None]:
+    """Of several programs that find a broken catalogue one puts it aside; the others find that it has been done."""
+    number = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
+    try:
+        fcntl.flock(number, fcntl.LOCK_EX)
+        yield
+    finally:
+        os.close(number)
+
+
+def _exchanged(path: Path) -> Opened:
+    try:
+        return _opened_in_turn(path)
+    except NotACatalogue:
+        aside = path.with_name(f"{NAME}.broken-{datetime.now():%Y%m%d-%H%M%S-%f}")
+        for side in ("", *SIDE_FILES):
+            if os.path.exists(f"{path}{side}"):
+                os.replace(f"{path}{side}", f"{aside}{side}")
+    fresh = _opened_in_turn(path)
     return Opened(fresh.engine, fresh.access, is_new=True, put_aside=aside)
 
 
@@ -112,8 +134,12 @@ def _is_made_ready(engine: Engine, path: Path, access: Access) -> bool:
         return False
     if access is not Access.WRITE:
         raise CatalogueError(f"the catalogue {path} has an older layout and its folder cannot be written to")
-    with engine.execution_options(**FOR_WRITING).begin() as connection:
-        return _brought_up_to_date(connection, path)
+    laying = engine_of(path, access, references=False)
+    try:
+        with laying.execution_options(**FOR_WRITING).begin() as connection:
+            return _brought_up_to_date(connection, path)
+    finally:
+        laying.dispose()
 
 
 def _check(connection: Connection) -> None:

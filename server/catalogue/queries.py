@@ -7,7 +7,7 @@ import binascii
 import json
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from datetime import datetime
+from datetime import UTC, datetime
 
 from sqlalchemy import ColumnElement, Row, Select, func, select, tuple_
 
@@ -64,10 +64,12 @@ def place_at(cursor: str) -> Place:
     try:
         text = base64.urlsafe_b64decode(cursor.encode() + b"=" * (-len(cursor) % 4))
         started_at, id, total = json.loads(text)
-        place = Place(datetime.fromisoformat(started_at), str(id), int(total))
-    except (binascii.Error, ValueError, TypeError) as error:
+        started = datetime.fromisoformat(started_at)
+        str(id).encode()  # half a surrogate pair is no text that could be looked for
+        place = Place(started.astimezone(UTC), str(id), max(0, int(total)))
+    except (binascii.Error, ValueError, TypeError, OverflowError) as error:
         raise BadCursor("this cursor does not belong to this list; begin again without one") from error
-    if place.started_at.tzinfo is None:
+    if started.tzinfo is None:
         raise BadCursor("this cursor has no time zone; begin again without one")
     return place
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -14,7 +15,7 @@ from server.catalogue.records import RunRecord
 from server.catalogue.shelf import RECORDING, Shelf, file_of
 from server.recording.listing import listed
 from server.recording.reading import Recording, Unreadable
-from server.recording.recovery import recover
+from server.recording.recovery import is_being_written, recover
 
 Watch = Callable[[int, int], None]
 """Told after each recording: how many have been read, and how many there are."""
@@ -46,29 +47,39 @@ def rebuild(shelf: Shelf, watch: Watch = lambda _read, _all: None) -> Rebuilt:
 
 
 def _take(shelf: Shelf, path: Path, done: Rebuilt) -> None:
-    try:
-        known = shelf.catalogue.get(path.name.removesuffix(RECORDING))
-    except NoSuchRun:
-        known = None
-    if known is not None and known.is_going_on:
-        return
+    """One recording, unless its run goes on."""
     try:
         found = _record_in(path)
     except Unreadable as error:
-        done.told.append(str(error))
+        if not _goes_on(path):
+            done.told.append(str(error))
         return
-    shelf.catalogue.put(replace(found, **_written(shelf, found.id, known)))
-    if known is None:
-        done.added += 1
-    else:
+
+    def made(known: RunRecord | None) -> RunRecord | None:
+        if known is None:
+            was_deleted = not path.exists()
+            done.added += not was_deleted
+            return None if was_deleted else replace(found, **edits_beside(shelf.folder, found.id))
+        if known.is_going_on:
+            return None
         done.renewed += 1
+        return replace(found, **_kept(known))
+
+    shelf.catalogue.renew(found.id, made)
 
 
-def _written(shelf: Shelf, id: str, known: RunRecord | None) -> dict[str, Any]:
-    """What a person has written about the run: as the catalogue has it, else as it stands beside the recording."""
-    if known is not None:
-        return {name: getattr(known, name) for name in EDITED}
-    return edits_beside(shelf.folder, id)
+def _goes_on(path: Path) -> bool:
+    """Somebody writes it, or has just made it; or it has just been deleted."""
+    try:
+        return path.stat().st_size == 0 or is_being_written(path)
+    except OSError:
+        return True
+
+
+def _kept(known: RunRecord) -> dict[str, Any]:
+    """What a recording does not know of its run: what a person has written, and the study that took it in later."""
+    written = {name: getattr(known, name) for name in EDITED}
+    return {**written, "study": known.study} if known.study else written
 
 
 def _record_in(path: Path) -> RunRecord:
@@ -83,21 +94,25 @@ def _mark_lost(shelf: Shelf) -> int:
     """Runs that had a recording which is not there any more."""
     lost = 0
     for id in shelf.catalogue.with_recording():
-        if not file_of(shelf.folder, id).exists():
+        if file_of(shelf.folder, id).exists():
+            continue
+        with contextlib.suppress(NoSuchRun):  # deleted since it was asked for
             shelf.catalogue.update(id, recording_state="lost", size_bytes=0)
             lost += 1
     return lost
 
 
-def put_in_order(shelf: Shelf) -> str:
-    """What a start has to do: deletions that were cut short, and a catalogue that has to be made anew.
+def put_in_order(shelf: Shelf, watch: Watch = lambda _read, _all: None) -> str:
+    """What a start has to do: deletions that were cut short, and recordings that the catalogue does not know.
 
     What was done, in words, if anything. Raises `CatalogueError`.
     """
     finish_deletions(shelf)
-    if not shelf.catalogue.is_new or not any(shelf.folder.glob(f"*{RECORDING}")):
+    if not shelf.catalogue.is_new:
+        return _unlisted_added(shelf, watch)
+    if not any(shelf.folder.glob(f"*{RECORDING}")):
         return ""
-    done = rebuild(shelf)
+    done = rebuild(shelf, watch)
     broken = shelf.catalogue.put_aside
     why = (
         "there was no catalogue of runs"
@@ -105,3 +120,17 @@ def put_in_order(shelf: Shelf) -> str:
         else f"the catalogue of runs was damaged (kept as {broken.name})"
     )
     return "; ".join((f"{why}: it was made anew from {done.added + done.renewed} recordings", *done.told))
+
+
+def _unlisted_added(shelf: Shelf, watch: Watch) -> str:
+    """Recordings whose run could not be listed when it was walked, or by a catalogue that was lost since."""
+    paths = {path.name.removesuffix(RECORDING): path for path in shelf.folder.glob(f"*{RECORDING}")}
+    done = Rebuilt()
+    unlisted = sorted(paths.keys() - shelf.catalogue.known(paths))
+    for read, id in enumerate(unlisted, start=1):
+        _take(shelf, paths[id], done)
+        watch(read, len(unlisted))
+    if not done.added:
+        return ""
+    number = "one recording was" if done.added == 1 else f"{done.added} recordings were"
+    return f"{number} not in the catalogue of runs, and came into it"

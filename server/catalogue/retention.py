@@ -31,7 +31,7 @@ def prunable(shelf: Shelf, policy: Policy, now: datetime | None = None) -> list[
     by_age = timedelta(days=policy.keep_days) if policy.keep_days > 0.0 else OLDEST
     eldest = (now or datetime.now(UTC)) - min(by_age, OLDEST)
     excess = catalogue.totals().size - policy.keep_GB * GB if policy.keep_GB > 0.0 else 0.0
-    return list(_chosen(catalogue.loose(), eldest, excess))
+    return list(_chosen(catalogue.loose(None if excess > 0.0 else eldest), eldest, excess))
 
 
 def _chosen(runs: list[Loose], eldest: datetime, excess: float) -> Iterator[Loose]:

@@ -14,8 +14,11 @@ FLAGS = ("simulated", "pinned")
 
 
 def folded(text: str) -> str:
-    """Text for comparing: one line without case, and with one way of writing each letter."""
-    return " ".join(unicodedata.normalize("NFKC", text).casefold().split())
+    """Text for comparing: one line without case, and with one way of writing each letter.
+
+    SQLite compares text up to its first NUL, so there is none.
+    """
+    return " ".join(unicodedata.normalize("NFKC", text).casefold().replace("\0", " ").split())
 
 
 def words_in(tags: Iterable[str], *texts: str) -> str:

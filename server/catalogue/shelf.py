@@ -10,8 +10,9 @@ from server.catalogue.catalogue import Catalogue
 
 RECORDINGS = "recordings"
 """In the data folder."""
-RECORDING, EDITS, TORN = ".mcap", ".json", ".mcap.torn"
-"""Files of one run, named after it: its recording; what a person has written about it; what could not be mended."""
+RECORDING, EDITS, TORN, WALKING = ".mcap", ".json", ".mcap.torn", ".walking"
+"""Files of one run, named after it: its recording; what a person has written about it; what could not be mended;
+and, while a run is walked that is not recorded, the one whose lock tells that its program lives."""
 
 
 class Shelf(Protocol):

@@ -12,6 +12,15 @@ REVISIONS = ("0001",)
 """The layouts that this program knows, oldest first: those under migrations/versions."""
 VERSION = REVISIONS[-1]
 """A new catalogue is made in this layout at once."""
+UNIX_YEAR = 1970
+
+
+def utc(time: datetime) -> datetime:
+    """The same instant in UTC; one that no calendar has there, in the first or the last year, is the nearest."""
+    try:
+        return time.astimezone(UTC)
+    except OverflowError:
+        return (datetime.min if time.year < UNIX_YEAR else datetime.max).replace(tzinfo=UTC)
 
 
 class UtcTime(TypeDecorator[datetime]):
@@ -21,7 +30,7 @@ class UtcTime(TypeDecorator[datetime]):
     cache_ok = True
 
     def process_bind_param(self, value: datetime | None, dialect: Dialect) -> datetime | None:  # noqa: ARG002
-        return None if value is None else value.astimezone(UTC).replace(tzinfo=None)
+        return None if value is None else utc(value).replace(tzinfo=None)
 
     def process_result_value(self, value: Any, dialect: Dialect) -> datetime | None:  # noqa: ARG002
         return None if value is None else value.replace(tzinfo=UTC)

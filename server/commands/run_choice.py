@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from server.commands.outcome import FAILED, USAGE, fail
+from server.commands.outcome import FAILED, USAGE, fail, warn
 from server.data_folder import data_folder
 
 if TYPE_CHECKING:
     from server.catalogue.catalogue import Catalogue
     from server.catalogue.records import RunRecord
-    from server.catalogue.shelf import OpenShelf
+    from server.catalogue.shelf import OpenShelf, Shelf
 
 LAST = "last"
 NAMED = 5
@@ -36,6 +36,7 @@ def opened_shelf(data: Path | None) -> Iterator[OpenShelf]:
     try:
         shelf = OpenShelf.open(data_folder(data))
         try:
+            tell_of_loss(shelf)
             yield shelf
         finally:
             shelf.close()
@@ -45,11 +46,23 @@ def opened_shelf(data: Path | None) -> Iterator[OpenShelf]:
         raise fail(str(error), FAILED) from error
 
 
+def tell_of_loss(shelf: Shelf) -> None:
+    """A catalogue that has just been made is empty; nobody should take that for there being no runs."""
+    from server.catalogue.shelf import RECORDING
+
+    if (aside := shelf.catalogue.put_aside) is not None:
+        warn(f"the catalogue of runs was damaged; it is kept as {aside}, and there is a new, empty one")
+    if shelf.catalogue.is_new and any(shelf.folder.glob(f"*{RECORDING}")):
+        warn("the catalogue of runs is new, and there are recordings: `pivotrig runs rebuild` lists them")
+
+
 def id_of(catalogue: Catalogue, text: str) -> str:
     """The id of the one run that is meant; ends the command where there is none, or more than one."""
+    if catalogue.known([text]):
+        return text
     found = catalogue.beginning_with("" if text == LAST else text, NAMED + 1)
-    if text in found or (text == LAST and found) or len(found) == 1:
-        return text if text in found else found[0]
+    if (text == LAST and found) or len(found) == 1:
+        return found[0]
     if not found:
         raise fail(_nothing_like(text), USAGE)
     named = ", ".join(found[:NAMED]) + (", ..." if len(found) > NAMED else "")

@@ -18,6 +18,7 @@ from server.commands.runs_edit import delete, edit, prune
 from server.commands.runs_export import export
 from server.commands.runs_mend import rebuild, recover
 from server.commands.runs_replay import again, replay
+from server.commands.runs_retrack import retrack
 from server.commands.sizes import size_text
 
 if TYPE_CHECKING:
@@ -67,8 +68,8 @@ def list_runs(
         tag=tag,
         study=study,
         pinned=pinned,
-        since=None if since is None else since.astimezone(),
-        until=None if until is None else until.astimezone(),
+        since=_instant(since),
+        until=_instant(until),
     )
     with opened_shelf(data) as shelf:
         page = shelf.catalogue.page(query, limit=limit)
@@ -82,6 +83,14 @@ def list_runs(
     _print_table(page.runs)
     rest = f" ({len(page.runs)} shown; --limit shows more)" if len(page.runs) < page.total else ""
     typer.echo(f"{page.total} of {totals.runs} runs{rest}, {size_text(totals.size)} in all", err=True)
+
+
+def _instant(local: datetime | None) -> datetime | None:
+    """A time of this place as one of everywhere; raises typer.BadParameter."""
+    try:
+        return None if local is None else local.astimezone()
+    except (ValueError, OverflowError) as error:  # in the first year and the last
+        raise typer.BadParameter(f"{local} is no time that this computer's clock knows") from error
 
 
 HEADINGS = ("id", "started", "label", "state", "controller", "trajectory", "error", "time", "size")
@@ -162,5 +171,5 @@ def _lines(values: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, s
             yield f"{prefix}{name}", " ".join(shown.split())
 
 
-for command in (edit, delete, prune, rebuild, recover, export, replay, again):
+for command in (edit, delete, prune, rebuild, recover, export, replay, again, retrack):
     app.command()(command)

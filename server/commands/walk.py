@@ -28,6 +28,7 @@ from server.commands.outcome import (
     with_simulation,
 )
 from server.commands.plugin_option import PluginOption, load_plugins
+from server.commands.run_choice import tell_of_loss
 from server.data_folder import data_folder
 from server.environment import check_environment
 from server.section import in_words
@@ -38,6 +39,7 @@ if TYPE_CHECKING:
     from control.runs import Choice, RunRequest
     from control.snapshot import Snapshot
     from server.archive import Archive
+    from server.assembly import Machine
     from server.headless import HeadlessRun
 
 
@@ -99,9 +101,10 @@ def walked(walk: HeadlessWalk, *, consent: bool) -> dict[str, Any]:
     from vision.sources.opening import CameraError
 
     id = new_id()
+    built: list[Machine] = []
     try:
-        with _archive(walk.data) as archive:
-            done = _carried_out(walk, id, archive, consent=consent)
+        with coils_stop_first(lambda: _stop_coils(built)), _archive(walk) as archive:
+            done = _carried_out(walk, id, built, archive, consent=consent)
     except (Refused, LinkError, CameraError) as error:
         raise fail(str(error), REFUSED) from error
     except OSError as error:
@@ -111,28 +114,38 @@ def walked(walk: HeadlessWalk, *, consent: bool) -> dict[str, Any]:
     return _result(id, done, is_simulated=walk.rig_file.is_simulated)
 
 
-def _carried_out(walk: HeadlessWalk, id: str, archive: Archive | None, *, consent: bool) -> HeadlessRun:
+def _stop_coils(machines: list[Machine]) -> None:
+    for machine in machines:
+        machine.stop_coils()
+
+
+def _carried_out(
+    walk: HeadlessWalk, id: str, built: list[Machine], archive: Archive | None, *, consent: bool
+) -> HeadlessRun:
+    """built: where the machine goes, for the signals that stop it."""
     from server.assembly import build_machine
     from server.headless import Headless
 
     machine = build_machine(walk.rig_file, realtime=not walk.rig_file.is_simulated)
-    with _Progress() as (progress, task), coils_stop_first(machine.stop_coils):
+    built.append(machine)
+    with _Progress() as (progress, task):
         show = lambda snapshot: _show(progress, task, snapshot)  # noqa: E731
         recorder = None if archive is None else archive.recorder
         return Headless(machine, show, recorder).run(id, walk.request, consent=consent)
 
 
 @contextmanager
-def _archive(data: Path | None) -> Iterator[Archive | None]:
-    """Its recorder waits for the disk rather than let a run end: a simulated one goes as fast as it can."""
-    if data is None:
+def _archive(walk: HeadlessWalk) -> Iterator[Archive | None]:
+    """A simulated run, which goes as fast as it can, waits for its recorder; a real one waits for no disk."""
+    if walk.data is None:
         yield None
         return
     from server.archive import Archive
     from server.catalogue.errors import CatalogueError
 
     try:
-        archive = Archive.open(data, patient=True)
+        archive = Archive.open(walk.data, patient=walk.rig_file.is_simulated)
+        tell_of_loss(archive)
     except (CatalogueError, OSError) as error:
         raise fail(f"{error}; choose another folder with --data, or walk with --no-record", FAILED) from error
     try:

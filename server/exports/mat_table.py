@@ -34,7 +34,8 @@ def write(recording: Recording, sink: BinaryIO, _job: Job, watch: Watch) -> None
         words = [_Words() for _ in COLUMNS]
         rows = _spool(recording, spool, words, watch)
         variables = _variables(_columns(spool, rows), words)
-        savemat(file, {**variables, **_about(recording)}, do_compression=True, oned_as="column")
+        contents = {**variables, **_about(recording)}
+        savemat(file, contents, do_compression=True, oned_as="column", long_field_names=True)
         _hand_over(file, sink)
 
 

@@ -14,6 +14,8 @@ from numpy.typing import NDArray
 
 from control.model import PIVOT_A, PIVOT_B, Measurement, Observation, Pose, Tracking
 from server.exports.formats import ExportError
+from server.recording.clock import rig_time_of_start
+from server.recording.paths import path_at, paths_of
 from server.recording.reading import Recording
 from server.recording.tick_reading import Tick
 from server.trail import EVERY, POINTS
@@ -22,8 +24,7 @@ from vision.overlay import Drawing, draw_overlay
 from vision.tracking.colour import Image
 
 MM = 1e-3
-SELECTION = "/selection"
-TOPICS = ("/state", "/estimate", "/measurement", "/reference", "/command", SELECTION)
+TOPICS = ("/state", "/estimate", "/measurement", "/reference", "/command")
 REMEMBERED = 120
 """Ticks in which the pose at a capture is looked for: two seconds, far more than a camera is late."""
 SAME = 1e-6
@@ -60,7 +61,6 @@ class _Settings(msgspec.Struct):
     camera: _Camera
     rig: _Rig
     body_height_mm: float
-    reference_points_mm: list[tuple[float, float]] = []
 
 
 class Overlay:
@@ -76,9 +76,8 @@ class Overlay:
                 f"nothing can be drawn over the pictures, since the recording's settings are damaged ({error}); "
                 "take the film without the overlay"
             ) from error
-        self._reference = np.array(self._settings.reference_points_mm, float).reshape(-1, 2) * MM
-        """(n, 2), m; another path may be chosen on the way."""
-        self._begin = _rig_time_of_start(recording)
+        self._paths = paths_of(recording)
+        self._begin = rig_time_of_start(recording)
         self._ticks = recording.ticks(topics=TOPICS)
         self._tick: Tick = {}
         self._poses: deque[tuple[float, float, float, float]] = deque(maxlen=REMEMBERED)
@@ -102,7 +101,7 @@ class Overlay:
             pose=self._pose_at(time),
             pivot=PIVOT_B if command.get("pivot") == PIVOT_B else PIVOT_A,
             observation=_observation(self._tick),
-            reference=self._reference,
+            reference=path_at(self._paths, captured),
             trail=np.array(self._trail, float).reshape(-1, 2),
             target=_point(self._tick.get("/reference")),
         )
@@ -118,8 +117,6 @@ class Overlay:
             self._note(tick)
 
     def _note(self, tick: Tick) -> None:
-        if SELECTION in tick:
-            self._reference = _path(tick[SELECTION], self._reference)
         point = _point(tick.get("/estimate"))
         if point is None:
             return
@@ -136,14 +133,6 @@ class Overlay:
         return Pose(*(float(np.interp(time, times, each)) for each in (x, y, heading)))
 
 
-def _rig_time_of_start(recording: Recording) -> float:
-    """Rig time at the run's start, s: ticks carry it beside their time since then."""
-    for entry in recording.messages(topics=["/state"]):
-        if isinstance(entry.data, dict):
-            return _number({"/state": entry.data}, "/state", "time_s", entry.time_s) - entry.time_s
-    return 0.0
-
-
 def _number(tick: Tick, topic: str, name: str, otherwise: float) -> float:
     value = tick.get(topic, {}).get(name)
     return value if isinstance(value, int | float) else otherwise
@@ -155,23 +144,6 @@ def _point(message: Any) -> tuple[float, float] | None:
         return None
     x, y = message.get("x_mm"), message.get("y_mm")
     return (x * MM, y * MM) if isinstance(x, int | float) and isinstance(y, int | float) else None
-
-
-class _Selection(msgspec.Struct):
-    """The part of a selection message that is drawn."""
-
-    reference_x_mm: list[float]
-    reference_y_mm: list[float]
-
-
-def _path(message: Any, otherwise: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The path's points (n, 2), m."""
-    try:
-        chosen = msgspec.convert(message, _Selection)
-    except msgspec.ValidationError:
-        return otherwise
-    points = zip(chosen.reference_x_mm, chosen.reference_y_mm, strict=False)
-    return np.array(list(points), float).reshape(-1, 2) * MM
 
 
 class _Sighting(msgspec.Struct):

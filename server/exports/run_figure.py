@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from array import array
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, BinaryIO
 
@@ -22,6 +23,8 @@ from server.reports.drawing import BLACK, BLUE, GREEN, ORANGE, PURPLE, label, pl
 SHOWN = ("time_s", "x_mm", "y_mm", "x_reference_mm", "y_reference_mm", "error_mm", "run_s", "pivot")
 BINS = 40
 """Of the distribution; an eight has some thousand errors."""
+MOST_DRAWN = 60_000
+"""Points of one line, a quarter of an hour's ticks: what a longer run has beside them would only fill the memory."""
 SIZE = (10.0, 5.4)
 """Width and height, inches."""
 
@@ -89,7 +92,7 @@ def walked(recording: Recording, watch: Watch) -> Walked:
     for rows in batches(recording, columns, watch):
         for series, found in zip(values, zip(*rows, strict=True), strict=True):
             series.extend(math.nan if value is None else value for value in found)
-    time, *others = (np.array(series) for series in values)
+    time, *others = (np.asarray(series) for series in values)
     return Walked(time - time[:1], *others)
 
 
@@ -101,14 +104,21 @@ def drawn(run: Walked, about: About) -> Figure:
     _path(places["path"], run)
     _error(places["error"], run, about.mean)
     _spread(places["spread"], run)
-    figure.suptitle(about.title, fontsize=11, x=0.01, horizontalalignment="left")
-    figure.supxlabel(about.subtitle, fontsize=8, x=0.01, horizontalalignment="left", color="#555555")
+    _line(figure.suptitle, about.title, fontsize=11)
+    _line(figure.supxlabel, about.subtitle, fontsize=8, color="#555555")
     return figure
 
 
+def _line(place: Callable[..., object], words: str, **looks: object) -> None:
+    """On the left, as it is: a name may have signs that are no letters, and a dollar that is no formula."""
+    shown = "".join(sign if sign.isprintable() else " " for sign in words)
+    place(shown, x=0.01, horizontalalignment="left", parse_math=False, **looks)
+
+
 def _path(axes: Axes, run: Walked) -> None:
-    axes.plot(run.x_reference, run.y_reference, color=BLACK, linewidth=1.0, label="reference")
-    axes.plot(run.x, run.y, color=GREEN, linewidth=1.2, label="robot")
+    some = evenly(len(run.time))
+    axes.plot(run.x_reference[some], run.y_reference[some], color=BLACK, linewidth=1.0, label="reference")
+    axes.plot(run.x[some], run.y[some], color=GREEN, linewidth=1.2, label="robot")
     for pivot, colour, name in ((PIVOT_A, BLUE, "switch to A"), (PIVOT_B, ORANGE, "switch to B")):
         at = run.switches_to(pivot)
         axes.plot(run.x[at], run.y[at], ".", color=colour, markersize=4, label=name)
@@ -118,7 +128,8 @@ def _path(axes: Axes, run: Walked) -> None:
 
 
 def _error(axes: Axes, run: Walked, mean: float | None) -> None:
-    axes.plot(run.time, run.error, color=GREEN, linewidth=1.0)
+    some = extremes(run.error)
+    axes.plot(run.time[some], run.error[some], color=GREEN, linewidth=1.0)
     if mean is None and len(run.errors):
         mean = float(run.errors.mean())
     if mean is not None:
@@ -126,6 +137,22 @@ def _error(axes: Axes, run: Walked, mean: float | None) -> None:
         axes.legend(fontsize=8, frameon=False)
     axes.set_ylim(bottom=0.0)
     label(axes, "time, s", "error, mm")
+
+
+def evenly(count: int) -> NDArray[np.int_]:
+    """Indices of so many points, or of fewer that are spread evenly over them."""
+    return np.linspace(0, max(count - 1, 0), min(count, MOST_DRAWN)).round().astype(int)
+
+
+def extremes(values: NDArray[np.float64]) -> NDArray[np.int_]:
+    """Indices of all values, or of the largest and the smallest of each stretch of them, so that no peak is lost."""
+    if len(values) <= MOST_DRAWN:
+        return np.arange(len(values))
+    stretches = np.array_split(np.arange(len(values)), MOST_DRAWN // 2)
+    unknown = np.isnan(values)
+    lowest, highest = np.where(unknown, np.inf, values), np.where(unknown, -np.inf, values)
+    chosen = [(part[lowest[part].argmin()], part[highest[part].argmax()]) for part in stretches]
+    return np.sort(np.array(chosen).ravel())
 
 
 def _spread(axes: Axes, run: Walked) -> None:

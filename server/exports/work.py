@@ -18,6 +18,8 @@ PIECE = 1 << 16
 """Bytes passed on at once."""
 LAST_WORDS = 2000
 """Characters kept of what an export says on its stderr."""
+PROGRAM = (sys.executable, "-P", "-m", "server.exports")
+"""-P: the folder that somebody works in may have a `server` of its own, which must not be taken for this one."""
 AT_ONCE = 2
 """Exports that may work at the same time; a further one waits for its turn."""
 
@@ -45,7 +47,7 @@ class Workshop:
 
 def _command(job: Job) -> list[str]:
     overlay = ["--overlay"] if job.overlay else []
-    return [sys.executable, "-m", "server.exports", job.format, str(job.path), *overlay]
+    return [*PROGRAM, job.format, str(job.path), *overlay]
 
 
 def _stream(pipe: asyncio.StreamReader | None) -> asyncio.StreamReader:

@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 from datetime import UTC, datetime, timedelta
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from server.recording.reading import Recording
 
 NANO = 1_000_000_000
 _EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
@@ -33,3 +37,12 @@ class RunClock:
     def newest(self) -> int:
         """Log time of the newest tick; what is told beside the ticks bears it, so that times never go back."""
         return self._newest or self.start
+
+
+def rig_time_of_start(recording: Recording) -> float:
+    """Rig time at which a recorded run began, s: each tick has both times. 0 where no tick tells it."""
+    for entry in recording.messages(["/state"]):
+        time = entry.data.get("time_s") if isinstance(entry.data, dict) else None
+        if isinstance(time, int | float):
+            return time - entry.time_s
+    return 0.0

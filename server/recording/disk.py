@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import errno
+import fcntl
 import os
 import shutil
 from pathlib import Path
+from tempfile import TemporaryFile
 from typing import Protocol
 
 OWN_FILE = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC
@@ -34,7 +37,7 @@ class Disk(Protocol):
         ...
 
     def check(self, folder: Path) -> None:
-        """Whether a file can be made there; leaves none behind."""
+        """Whether a file can be made and locked there; leaves none behind."""
         ...
 
     def free(self, folder: Path) -> int:
@@ -73,20 +76,20 @@ class LocalDisk:
         return LocalFile(path)
 
     def check(self, folder: Path) -> None:
-        probe = folder / f".writable-{os.getpid()}"
-        try:
-            os.close(os.open(probe, OWN_FILE, 0o666))
-        finally:
-            probe.unlink(missing_ok=True)
+        with TemporaryFile(dir=folder) as probe:
+            fcntl.flock(probe.fileno(), fcntl.LOCK_EX | fcntl.LOCK_NB)
 
     def free(self, folder: Path) -> int:
         return shutil.disk_usage(folder).free
 
 
 def sync_folder(folder: Path) -> None:
-    """Make a new file's name last."""
+    """Make a new file's name last; some network disks do so by themselves, and refuse to be asked."""
     number = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
     try:
         os.fsync(number)
+    except OSError as error:
+        if error.errno not in (errno.EINVAL, errno.ENOTSUP):
+            raise
     finally:
         os.close(number)

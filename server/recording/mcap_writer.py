@@ -7,10 +7,11 @@ and has to go back there when a disk fails in the middle of one.
 
 from __future__ import annotations
 
+import contextlib
 import os
 import struct
 import zlib
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 import zstandard
@@ -52,7 +53,7 @@ Index = dict[int, list[tuple[int, int]]]
 
 @dataclass(slots=True)
 class OpenChunk:
-    """Messages that are not in the file yet."""
+    """Messages that are not in the file yet. start, end: log times of the first and the last one, UTC ns."""
 
     parts: list[bytes] = field(default_factory=list)
     size: int = 0
@@ -84,10 +85,22 @@ class Summary:
 
     schemas: list[Schema] = field(default_factory=list)
     channels: list[Channel] = field(default_factory=list)
-    chunks: list[ChunkIndex] = field(default_factory=list)
+    chunks: list[bytes] = field(default_factory=list)
+    """Their indexes, packed: a day has 350 000 of them."""
+    start: int = 0
+    end: int = 0
     attachments: list[AttachmentIndex] = field(default_factory=list)
     metadata: list[MetadataIndex] = field(default_factory=list)
     counts: dict[int, int] = field(default_factory=dict)
+
+    def add(self, index: ChunkIndex) -> None:
+        """One more chunk."""
+        if self.chunks:
+            self.start = min(self.start, index.message_start_time)
+        else:
+            self.start = index.message_start_time
+        self.end = max(self.end, index.message_end_time)
+        self.chunks.append(bytes_of(index))
 
     def statistics(self) -> Statistics:
         return Statistics(
@@ -96,19 +109,20 @@ class Summary:
             channel_message_counts={id: count for id, count in self.counts.items() if count},
             chunk_count=len(self.chunks),
             message_count=sum(self.counts.values()),
-            message_end_time=max((chunk.message_end_time for chunk in self.chunks), default=0),
-            message_start_time=min((chunk.message_start_time for chunk in self.chunks), default=0),
+            message_end_time=self.end,
+            message_start_time=self.start,
             metadata_count=len(self.metadata),
             schema_count=len(self.schemas),
         )
 
-    def groups(self) -> Iterable[tuple[Opcode, Sequence[McapRecord]]]:
-        yield Opcode.SCHEMA, self.schemas
-        yield Opcode.CHANNEL, self.channels
-        yield Opcode.STATISTICS, [self.statistics()]
+    def groups(self) -> Iterable[tuple[Opcode, Iterable[bytes]]]:
+        """The records of each kind, packed."""
+        yield Opcode.SCHEMA, map(bytes_of, self.schemas)
+        yield Opcode.CHANNEL, map(bytes_of, self.channels)
+        yield Opcode.STATISTICS, [bytes_of(self.statistics())]
         yield Opcode.CHUNK_INDEX, self.chunks
-        yield Opcode.ATTACHMENT_INDEX, self.attachments
-        yield Opcode.METADATA_INDEX, self.metadata
+        yield Opcode.ATTACHMENT_INDEX, map(bytes_of, self.attachments)
+        yield Opcode.METADATA_INDEX, map(bytes_of, self.metadata)
 
 
 class McapWriter:
@@ -123,6 +137,7 @@ class McapWriter:
         self._chunk = OpenChunk()
         self._sequences: dict[int, int] = {}
         self._crc = 0
+        self._is_torn = False
         self.summary = Summary()
         self.size = 0
         self._write(MAGIC + bytes_of(Header("", library)))
@@ -163,7 +178,7 @@ class McapWriter:
         indexes, offsets = _indexes(index, self.size + len(packed))
         at = self.size
         self._write(packed + indexes)
-        self.summary.chunks.append(_chunk_index(record, at, len(packed), offsets, len(indexes)))
+        self.summary.add(_chunk_index(record, at, len(packed), offsets, len(indexes)))
         for channel, entries in index.items():
             self.summary.counts[channel] = self.summary.counts.get(channel, 0) + len(entries)
 
@@ -214,13 +229,22 @@ class McapWriter:
     def _write(self, data: bytes) -> None:
         """All of it, or the file is cut to what it was and the error raised."""
         try:
+            if self._is_torn:
+                self._cut()
             self._file.write(data)
         except OSError:
-            os.ftruncate(self._file.fileno(), self.size)
-            os.lseek(self._file.fileno(), self.size, os.SEEK_SET)
+            self._is_torn = True
+            with contextlib.suppress(OSError):  # else before anything else is written
+                self._cut()
             raise
         self.size += len(data)
         self._crc = zlib.crc32(data, self._crc)
+
+    def _cut(self) -> None:
+        """Back to what is whole."""
+        os.ftruncate(self._file.fileno(), self.size)
+        os.lseek(self._file.fileno(), self.size, os.SEEK_SET)
+        self._is_torn = False
 
 
 def bytes_of(record: McapRecord) -> bytes:
@@ -260,15 +284,13 @@ def _chunk_index(chunk: Chunk, at: int, length: int, offsets: dict[int, int], in
 
 def _packed_summary(summary: Summary, start: int) -> tuple[bytes, int]:
     """The summary that stands at `start`, and where its own table of contents begins."""
-    builder = RecordBuilder()
-    offsets: list[SummaryOffset] = []
+    parts: list[bytes] = []
+    offsets: list[bytes] = []
+    at = start
     for opcode, group in summary.groups():
-        at = builder.count
-        for record in group:
-            record.write(builder)
-        if group:
-            offsets.append(SummaryOffset(opcode, start + at, builder.count - at))
-    offset_start = start + builder.count
-    for offset in offsets:
-        offset.write(builder)
-    return builder.end(), offset_start
+        packed = b"".join(group)
+        if packed:
+            parts.append(packed)
+            offsets.append(bytes_of(SummaryOffset(opcode, at, len(packed))))
+            at += len(packed)
+    return b"".join(parts + offsets), at

@@ -18,7 +18,9 @@ from vision.encoding import encode_jpeg
 log = logging.getLogger(__name__)
 
 WAITING = 4
-"""Pictures that may wait for the encoder: 12 MB of 640 x 480, and longer than any burst of work takes."""
+"""Pictures that may wait for the encoder: 4 MB of 640 x 480, and longer than any burst of work takes."""
+PATIENCE = 10.0
+"""Where a picture waits for room, it waits no longer than this, s."""
 
 
 class FrameRate:
@@ -34,8 +36,10 @@ class FrameRate:
 
         Half a period of tolerance: a camera at about this rate loses no picture to its own jitter.
         """
-        if not math.isfinite(self._period) or not captured_at >= self._due - 0.5 * self._period:
+        if not (math.isfinite(self._period) and math.isfinite(captured_at)):
             return False
+        if self._due - 2.0 * self._period < captured_at < self._due - 0.5 * self._period:
+            return False  # before that lies more than a period: a stamp was wrong, and is not waited for
         self._due = max(self._due + self._period, captured_at + 0.5 * self._period)
         return True
 
@@ -89,7 +93,7 @@ class Encoder:
         """False when there is no room for it. quality: JPEG's, 1..100."""
         self.start()
         try:
-            self._waiting.put((picture, quality), block=self._patient)
+            self._waiting.put((picture, quality), self._patient, PATIENCE)
         except queue.Full:
             return False
         return True

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from datetime import UTC, datetime, timedelta
+from itertools import islice
 from pathlib import Path
 from types import TracebackType
 from typing import Any
@@ -202,9 +203,9 @@ class Recording:
             if picture is not None:
                 yield picture
 
-    def events(self) -> list[dict[str, Any]]:
+    def events(self, most: int | None = None) -> list[dict[str, Any]]:
         """The lines of the event log, oldest first: time_s since the run's start, severity, code, message."""
-        lines = self._timeline.between(self._channels([EVENTS.name]))
+        lines = islice(self._timeline.between(self._channels([EVENTS.name])), most)
         return [_line(self._seconds(line.publish_time), self.decode(line)) for line in lines]
 
     def _channels(self, topics: Iterable[str] | None) -> dict[int, str]:

@@ -9,7 +9,6 @@ from __future__ import annotations
 import threading
 import time
 from collections import OrderedDict
-from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -40,8 +39,9 @@ PICTURE_SHARE = 8
 """A JPEG takes no more than this part of its picture: an eighth is quality 95 of a noisy one."""
 START_ROOM = 20 * MEGA
 """Bytes beyond what has to stay free that a run needs to begin: half a minute of pictures."""
-CLOSE_WITHIN = 5.0
-"""Everything is finished after this long, s (faults.md, row 16)."""
+CLOSE_WITHIN = 3.0
+"""Everything is finished after this long, s; with the coils and the sockets the program is gone within 5 s (faults.md,
+row 16). What a disk has not taken by then is mended at the next start."""
 REMEMBERED = 100
 """Runs whose recordings can be waited for."""
 
@@ -67,7 +67,8 @@ class Recorder:
         self._frames = FrameRate(0.0)
         self._over_at: float | None = None
         self._is_over = False
-        self._sessions: OrderedDict[str, Session] = OrderedDict()
+        self._finished: OrderedDict[str, threading.Event] = OrderedDict()
+        self._give_up_at: float | None = None
 
     def start(self) -> None:
         """Start the threads now, rather than in the middle of the first run."""
@@ -116,8 +117,10 @@ class Recorder:
                 self._hand_over(session, snapshot, frame)
             if self._is_past_tail(snapshot.time):
                 self._finish()
-        if self._patient:
-            self._scribe.wait_for_room()
+        if self._patient and not session.failure and not self._scribe.wait_for_room(LONGEST_WAIT):
+            session.give_up(
+                f"the disk hangs: it has taken nothing for {LONGEST_WAIT:.0f} s; see to it, or use another one"
+            )
 
     def event(self, line: Announcement) -> None:
         """A line of the event log."""
@@ -139,11 +142,16 @@ class Recorder:
             session = self._session
             if session is None or session.run.id != run.id or self._is_over:
                 return
-            ended_at = datetime.now(UTC)
+            ended_at = session.wall_time
             self._is_over = True
             self._scribe.put(lambda: session.end(run, ended_at))
             if session.failure:
                 self._finish()
+
+    def finish(self) -> None:
+        """Whatever is recorded ends here: the rig of its ticks is about to be another one, with another clock."""
+        with self._lock:
+            self._finish()
 
     @property
     def failure(self) -> str:
@@ -167,15 +175,15 @@ class Recorder:
 
     def written(self, id: str, timeout: float) -> bool:
         """Wait until nobody here writes the recording of that run any more; False when that takes longer (s)."""
-        session = self._sessions.get(id)
-        return session is None or session.finished.wait(timeout)
+        finished = self._finished.get(id)
+        return finished is None or finished.wait(timeout)
 
     def close(self) -> None:
-        """Finish what is recorded, within 5 s; safe to call twice. A disk that hangs is left to itself."""
-        give_up = time.monotonic() + CLOSE_WITHIN
+        """Finish what is recorded, within 3 s; safe to call twice. A disk that hangs is left to itself."""
         with self._lock:
             self._finish()
-        self._scribe.close(within=give_up - time.monotonic())
+            give_up = self._give_up_at = self._give_up_at or time.monotonic() + CLOSE_WITHIN
+        self._scribe.close(within=max(give_up - time.monotonic(), 0.0))
         self._encoder.close(within=max(give_up - time.monotonic(), 0.1))
 
     # Inside --------------------------------------------------------------------------------------
@@ -223,6 +231,6 @@ class Recorder:
             self._scribe.put(session.finish)
 
     def _remember(self, session: Session) -> None:
-        self._sessions[session.run.id] = session
-        while len(self._sessions) > REMEMBERED:
-            self._sessions.popitem(last=False)
+        self._finished[session.run.id] = session.finished
+        while len(self._finished) > REMEMBERED:
+            self._finished.popitem(last=False)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from server.catalogue.edits import edits_beside
 from server.catalogue.errors import NoSuchRun
 from server.catalogue.records import INTERRUPTED, RUNNING, RunRecord
+from server.catalogue.shelf import file_of
 from server.recording.listing import REASON, listed
 from server.recording.reading import Recording, Unreadable
 
@@ -21,23 +22,24 @@ OF_END = ("state", "reason", "ended_at", "metrics")
 
 def put_recovered(catalogue: Catalogue, folder: Path, record: RunRecord) -> None:
     """record: as the recovered file has it. What is known already of the run's end, or written about it, stays."""
-    try:
-        known = catalogue.get(record.id)
-    except NoSuchRun:
-        if not catalogue.known([record.id]):  # else it is being deleted
-            catalogue.put(replace(record, **edits_beside(folder, record.id)))
-        return
-    fields = OF_FILE + OF_END if known.state == RUNNING else OF_FILE
-    catalogue.update(record.id, **{name: getattr(record, name) for name in fields})
+
+    def made(known: RunRecord | None) -> RunRecord | None:
+        if known is not None:
+            fields = OF_FILE if known.state != RUNNING and known.ended_at is not None else OF_FILE + OF_END
+            return replace(known, **{name: getattr(record, name) for name in fields})
+        was_deleted = not file_of(folder, record.id).exists()
+        return None if was_deleted else replace(record, **edits_beside(folder, record.id))
+
+    catalogue.renew(record.id, made)
 
 
-def put_torn(catalogue: Catalogue, id: str) -> None:
-    """Nothing of its recording can be read."""
+def put_torn(catalogue: Catalogue, id: str, size: int) -> None:
+    """Nothing of its recording can be read. size: of what is kept of it, bytes."""
     try:
         known = catalogue.get(id)
     except NoSuchRun:
         return
-    catalogue.update(id, recording_state="lost", size_bytes=0, **_end(known))
+    catalogue.update(id, recording_state="lost", size_bytes=size, **_end(known))
 
 
 def end_row(catalogue: Catalogue, path: Path, known: RunRecord) -> None:
@@ -47,11 +49,19 @@ def end_row(catalogue: Catalogue, path: Path, known: RunRecord) -> None:
             if recording.is_whole:
                 put_recovered(catalogue, path.parent, listed(known.id, recording))
                 return
+            file = {"recording_state": "recovered", "size_bytes": recording.size}  # to be mended another time
     except Unreadable:
-        if known.recording_state == "writing" and not path.exists():
-            catalogue.update(known.id, recording_state="lost", size_bytes=0, **_end(known))
-            return
-    catalogue.update(known.id, **_end(known))
+        file = {"recording_state": "lost", "size_bytes": _size(path)}
+    is_open = known.recording_state == "writing"
+    catalogue.update(known.id, **_end(known), **(file if is_open else {}))
+
+
+def _size(path: Path) -> int:
+    """Bytes; 0 for a file that is not there."""
+    try:
+        return path.stat().st_size
+    except OSError:
+        return 0
 
 
 def _end(known: RunRecord) -> dict[str, Any]:

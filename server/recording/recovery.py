@@ -11,13 +11,12 @@ import fcntl
 import os
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from server.catalogue.errors import CatalogueError, NoSuchRun
 from server.catalogue.records import RUNNING
-from server.catalogue.shelf import RECORDING, TORN, file_of
+from server.catalogue.shelf import RECORDING, TORN, WALKING, file_of
 from server.recording.byte_source import ByteSource, Damaged
 from server.recording.disk import LocalDisk, sync_folder
 from server.recording.finding import has_end, look_through
@@ -51,14 +50,13 @@ def recover(
     between: called after each quarter second that was copied, for a rig that walks meanwhile.
     Raises `CatalogueError` when the catalogue cannot be read.
     """
-    began = datetime.now(UTC)
     done: list[Recovered] = []
     for path in sorted(folder.glob(f"*{RECORDING}")):
         with torn(path) as source:
             if source is not None:
                 done.append(_recovered(path, source, catalogue, between))
     told = {each.id for each in done}
-    return done + [each for each in _ended_rows(folder, catalogue, began) if each.id not in told]
+    return done + [each for each in _ended_rows(folder, catalogue) if each.id not in told]
 
 
 @contextlib.contextmanager
@@ -103,6 +101,9 @@ def _recovered(
         repair = _copied(source, new, _ended(catalogue, id), between)
         with Recording.open(new) as whole:
             record = listed(id, whole)
+        if not _is_still(path, source):
+            new.unlink()
+            return Recovered(id, f"run {id} was deleted while its recording was being recovered")
         trouble = _trouble(lambda: put_recovered(catalogue, path.parent, record))
         os.replace(new, path)
         sync_folder(path.parent)
@@ -161,7 +162,7 @@ def _set_aside(path: Path, catalogue: Catalogue, error: Damaged) -> Recovered:
         os.replace(path, kept)
     except OSError as trouble:
         return Recovered(id, f"nothing of the recording {path} can be read: {error} ({trouble.strerror})")
-    said = _trouble(lambda: put_torn(catalogue, id))
+    said = _trouble(lambda: put_torn(catalogue, id, kept.stat().st_size))
     return Recovered(
         id, f"nothing of the recording of run {id} can be read: {error}; it is kept as {kept}{said}"
     )
@@ -176,21 +177,30 @@ def _trouble(change: Callable[[], None]) -> str:
     return ""
 
 
-def _ended_rows(folder: Path, catalogue: Catalogue, began: datetime) -> Iterator[Recovered]:
-    """Runs that were going on before `began`, and that nobody records."""
+def _ended_rows(folder: Path, catalogue: Catalogue) -> Iterator[Recovered]:
+    """Runs that were going on, and that nobody walks any more."""
     for id in catalogue.going_on():
+        path, walking = file_of(folder, id), file_of(folder, id, WALKING)
+        if is_being_written(path) or is_being_written(walking):
+            continue
         try:
-            record = catalogue.get(id)
+            record = catalogue.get(id)  # its program writes how it has ended before it lets the lock go
         except NoSuchRun:
             continue
-        path = file_of(folder, id)
-        if record.started_at < began and not is_being_written(path):
+        if record.is_going_on:
             said = _trouble(lambda path=path, record=record: end_row(catalogue, path, record))
-            yield Recovered(id, f"run {id} was interrupted{said}")
+            what = (
+                "was interrupted"
+                if record.state == RUNNING
+                else "has ended, and its recording was not listed"
+            )
+            yield Recovered(id, f"run {id} {what}{said}")
+        with contextlib.suppress(OSError):
+            walking.unlink(missing_ok=True)
 
 
 def is_being_written(path: Path) -> bool:
-    """Whether a recorder, of whatever program, holds the file."""
+    """Whether the program that walks the run, of all programs, holds the file."""
     try:
         source = ByteSource(path)
     except OSError:

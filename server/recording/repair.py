@@ -105,7 +105,7 @@ class Repair:
         return {topic: data for topic, data in found if isinstance(data, dict)}
 
     def _finish(self) -> None:
-        end = max((chunk.message_end_time for chunk in self._writer.summary.chunks), default=0)
+        end = self._writer.summary.end
         self._writer.attach(OVERVIEW, JSON, msgspec.json.encode(self.recount.overview.as_json()), end)
         self._writer.attach(OUTCOME, JSON, msgspec.json.encode(self.outcome), end)
         left_out, lost = str(self.left_out), str(self._source.size - self._contents.end)

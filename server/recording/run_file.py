@@ -68,12 +68,12 @@ class RunFile:
         try:
             fcntl.flock(self._file.fileno(), fcntl.LOCK_EX | fcntl.LOCK_NB)
             self._writer = _begun(self._file, settings)
+            sync_folder(path.parent)
         except BaseException:
             self._file.close()
             path.unlink(missing_ok=True)
             raise
         self._channels = {topic.name: self._register(topic.name) for topic in TOPICS}
-        sync_folder(path.parent)
 
     @property
     def size(self) -> int:
@@ -219,7 +219,7 @@ def _begun(file: DiskFile, settings: dict[str, Any]) -> McapWriter:
         "version": settings["versions"]["pivotrig"],
     }
     writer.describe(METADATA, words)
-    writer.attach(SETTINGS, JSON, json.dumps(settings).encode(), 0)
+    writer.attach(SETTINGS, JSON, msgspec.json.encode(settings), 0)
     return writer
 
 

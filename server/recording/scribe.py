@@ -67,9 +67,10 @@ class Scribe:
         self._put_size += size
         self._jobs.put(Tick(job, time, size))
 
-    def wait_for_room(self) -> None:
+    def wait_for_room(self, within: float) -> bool:
+        """False when there is none after so many seconds."""
         with self._room:
-            self._room.wait_for(lambda: self.ticks_waiting < ROOM or self._is_closed)
+            return self._room.wait_for(lambda: self.ticks_waiting < ROOM or self._is_closed, within)
 
     def close(self, within: float) -> bool:
         """Do what waits, and end the thread; False when it does not come back within so many seconds."""

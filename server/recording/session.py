@@ -11,8 +11,8 @@ import logging
 import threading
 import time
 from collections import deque
-from collections.abc import Callable, Iterator
-from datetime import datetime
+from collections.abc import Iterator
+from datetime import datetime, timedelta
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -20,12 +20,12 @@ from control.news import Announcement
 from control.runs import Run
 from control.snapshot import Snapshot
 from server.metrics_json import metrics_json
+from server.recording.catalogue_row import CatalogueRow
 from server.recording.clock import RunClock
 from server.recording.conditions import Conditions, settings_json
 from server.recording.disk import Disk
 from server.recording.overview import Overview, point_of
 from server.recording.pictures import Picture
-from server.recording.row import record_of
 from server.recording.run_file import RunFile
 
 if TYPE_CHECKING:
@@ -52,7 +52,7 @@ class Session:
         """Pictures for which the encoder had no room; counted by the rig's side."""
         self.finished = threading.Event()
         self._conditions = conditions
-        self._catalogue = catalogue
+        self._row = CatalogueRow(catalogue, folder, conditions)
         self._folder = folder
         self._disk = disk
         self._file: RunFile | None = None
@@ -63,7 +63,8 @@ class Session:
         self._early: list[Announcement] = []
         self._ended_at: datetime | None = None
         self._no_pictures = 0
-        self._is_broken = False
+        self._is_shut = False
+        self._began = time.monotonic()
 
     @property
     def is_kept(self) -> bool:
@@ -84,6 +85,16 @@ class Session:
     def size(self) -> int:
         return 0 if self._file is None else self._file.size
 
+    @property
+    def wall_time(self) -> datetime:
+        """Now, UTC, by the run's start and the time since then: whoever sets this computer's clock changes no run."""
+        return self.run.started_at + timedelta(seconds=time.monotonic() - self._began)
+
+    @property
+    def _open_file(self) -> RunFile | None:
+        """None where there is no file, or it takes nothing more: closed, or given up by its disk."""
+        return None if self._is_shut else self._file
+
     def begin(self) -> None:
         """The file and the row."""
         with self._guarded():
@@ -92,12 +103,7 @@ class Session:
                 if self.is_kept:
                     self._file = self._create(settings)
             finally:
-                self._list(settings)
-
-    def _list(self, settings: dict[str, Any]) -> None:
-        """A run whose file cannot be made is listed, too."""
-        state = "none" if self._file is None else "writing"
-        self._tell_catalogue(lambda: self._catalogue.add(record_of(settings, state)))
+                self._row.begin(settings, has_file=self._file is not None)  # also where none can be made
 
     def _create(self, settings: dict[str, Any]) -> RunFile:
         keep_free = self._conditions.recording.keep_free_MB * MEGA
@@ -114,8 +120,9 @@ class Session:
             while self._pending and _is_ready(self._pending[0][1]):
                 self._write(*self._pending.popleft())
             self._write_late_pictures()
-            if self._file is not None and self._clock is not None and not self._is_broken:
-                self._file.flush_if_due()
+            file = self._open_file
+            if file is not None and self._clock is not None:
+                file.flush_if_due()
 
     def event(self, line: Announcement) -> None:
         """What is told before the first tick stands behind it in the file."""
@@ -123,41 +130,29 @@ class Session:
             self._early.append(line)
             return
         with self._guarded():
-            if self._file is not None and not self._is_broken:
-                self._file.event(line)
+            if (file := self._open_file) is not None:
+                file.event(line)
 
     def change(self, run: Run) -> None:
         """Another selection from here on."""
         self.run = run
         with self._guarded():
-            if self._file is not None and self._clock is not None and not self._is_broken:
-                self._file.select(run.request.selection)
-        selection = settings_json(run, self._conditions)["run"]
-        self._tell_catalogue(
-            lambda: self._catalogue.update(
-                run.id,
-                controller=run.request.selection.controller.name,
-                trajectory=run.request.selection.trajectory.name,
-                selection={part: selection[part] for part in ("controller", "trajectory", "gait")},
-            )
-        )
+            if (file := self._open_file) is not None and self._clock is not None:
+                file.select(run.request.selection)
+        self._row.change(run)
 
     def end(self, run: Run, ended_at: datetime) -> None:
         """The run is over; its last half second is still to come."""
         self.run, self._ended_at = run, ended_at
-        metrics = None if run.metrics is None else metrics_json(run.metrics)
-        self._tell_catalogue(
-            lambda: self._catalogue.update(
-                run.id, state=run.state.value, reason=run.reason, ended_at=ended_at, metrics=metrics
-            )
-        )
+        self._row.end(run, ended_at)
 
     def finish(self) -> None:
         """The end of the file; afterwards it is whole, or as whole as the disk allows."""
         try:
             self._wait_for_pictures()
             complete = self._close_file()
-            self._tell_catalogue(lambda: self._note_file(complete))
+            self._is_shut = True
+            self._row.finish(self.run, self._ended_at, self._of_file(complete))
         finally:
             self.finished.set()
 
@@ -170,11 +165,12 @@ class Session:
     def _write(self, snapshot: Snapshot, picture: Picture | None) -> None:
         clock = self._clock or self._begin_at(snapshot)
         self._overview.add(clock.since_start(snapshot.time), functools.partial(point_of, snapshot))
-        if self._file is None or self._is_broken:
+        file = self._open_file
+        if file is None:
             return
-        self._file.tick(snapshot)
+        file.tick(snapshot)
         while self._early:
-            self._file.event(self._early.pop(0))
+            file.event(self._early.pop(0))
         if picture is None:
             return
         if picture.is_done:
@@ -192,9 +188,10 @@ class Session:
         return clock
 
     def _write_picture(self, picture: Picture) -> None:
-        if picture.jpeg and self._file is not None:
-            self._file.picture(picture)
-        elif not picture.jpeg:
+        file = self._open_file
+        if file is not None and picture.jpeg:
+            file.picture(picture)
+        else:
             self._no_pictures += 1
 
     def _write_late_pictures(self) -> None:
@@ -203,27 +200,24 @@ class Session:
 
     def _wait_for_pictures(self) -> None:
         give_up = time.monotonic() + LAST_PICTURES
-        while (self._pending or self._late) and time.monotonic() < give_up and not self._is_broken:
+        while (self._pending or self._late) and time.monotonic() < give_up and not self._is_shut:
             self.go_on()
             time.sleep(0.005)
         while self._pending:
             with self._guarded():
                 self._write(*self._pending.popleft())
+        self._no_pictures += len(self._late)
+        self._late.clear()
 
     def _close_file(self) -> bool:
         """Whether the file has its end."""
         file = self._file
         if file is None:
             return False
-        try:
+        with self._guarded(), contextlib.closing(file):
             file.finish(self._outcome(file), self._overview.as_json())
-        except OSError as error:
-            self.give_up(in_words(error))
-            return False
-        finally:
-            with contextlib.suppress(OSError):
-                file.close()
-        return True
+            return True
+        return False
 
     def _outcome(self, file: RunFile) -> dict[str, Any]:
         run = self.run
@@ -238,19 +232,12 @@ class Session:
             "failure": self.failure,
         }
 
-    def _note_file(self, complete: bool) -> None:
-        sparkline = self._overview.sparkline()
-        file = self._file
-        if file is None:
-            self._catalogue.update(self.run.id, sparkline=sparkline)
-            return
-        self._catalogue.update(
-            self.run.id,
-            sparkline=sparkline,
-            size_bytes=file.size,
-            frames=file.frames,
-            recording_state="complete" if complete else "recovered",  # readable, though it lacks its end
-        )
+    def _of_file(self, complete: bool) -> dict[str, Any]:
+        found: dict[str, Any] = {"sparkline": self._overview.sparkline()}
+        if self._file is not None:
+            state = "complete" if complete else "recovered"  # readable, though it lacks its end
+            found |= {"size_bytes": self._file.size, "frames": self._file.frames, "recording_state": state}
+        return found
 
     @contextlib.contextmanager
     def _guarded(self) -> Iterator[None]:
@@ -259,21 +246,12 @@ class Session:
             yield
         except OSError as error:
             log.error("the recording of run %s ends: %s", self.run.id, in_words(error))
-            self._is_broken = True
+            self._is_shut = True
             self.give_up(in_words(error))
         except Exception as error:
             log.exception("the recording of run %s ends", self.run.id)
-            self._is_broken = True
+            self._is_shut = True
             self.give_up(f"the recorder has a mistake ({error!r})")
-
-    def _tell_catalogue(self, change: Callable[[], object]) -> None:
-        """Its trouble is no reason to stop anything: what it lacks is in the recording."""
-        from server.catalogue.errors import CatalogueError
-
-        try:
-            change()
-        except CatalogueError as error:
-            log.error("run %s: %s", self.run.id, error)
 
 
 def _is_ready(picture: Picture | None) -> bool:

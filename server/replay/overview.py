@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Mapping
 from typing import Any
 
-from server.recording.foxglove import LEVELS
+import numpy as np
+from numpy.typing import NDArray
+
+from server.recording.paths import MM, paths_of
 from server.recording.reading import Recording
-from server.recording.topics import EVENTS
 from server.replay.series import computed_series
 from server.replay.then import camera_of, reference_points, robot_length_mm, workspace_half_mm
 
-SEVERITIES = {level: severity for severity, level in LEVELS.items()}
 MOST_EVENTS = 1000
 """Lines of the event log that are told of; a run has about ten."""
 
@@ -32,6 +32,7 @@ def overview_of(recording: Recording) -> dict[str, Any]:
         "workspace": {"half_mm": workspace_half_mm(settings)},
         "robot": {"length_mm": robot_length_mm(settings)},
         "reference_points_mm": reference_points(settings),
+        "paths": [path_json(*path) for path in paths_of(recording)],
         "events": events_of(recording),
         "series": series_of(recording),
     }
@@ -44,11 +45,11 @@ def series_of(recording: Recording) -> Mapping[str, Any]:
 
 
 def events_of(recording: Recording) -> list[dict[str, Any]]:
-    entries = itertools.islice(recording.messages([EVENTS.name]), MOST_EVENTS)
-    return [event_json(entry.time_s, entry.data) for entry in entries if isinstance(entry.data, dict)]
+    """What was told a moment before the first tick belongs to the beginning."""
+    lines = recording.events(MOST_EVENTS)
+    return [{**line, "time_s": max(line["time_s"], 0.0)} for line in lines]
 
 
-def event_json(time: float, line: Mapping[str, Any]) -> dict[str, Any]:
-    """line: of type foxglove.Log."""
-    severity = SEVERITIES.get(line.get("level", 0), "info")
-    return {"time_s": time, "severity": severity, "code": line.get("name"), "message": line.get("message")}
+def path_json(time: float, points: NDArray[np.float64]) -> dict[str, Any]:
+    """points: (n, 2), m, of the path that was to be walked from that time on."""
+    return {"time_s": time, "points_mm": (points / MM).tolist()}

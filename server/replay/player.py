@@ -6,16 +6,14 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from server.recording.clock import rig_time_of_start
 from server.recording.reading import Picture, Recording, Unreadable
 from server.recording.recount import NOTHING, number
 from server.recording.tick_json import as_tick
 from server.recording.tick_reading import Tick
-from server.recording.topics import CALIBRATION
 
 SAME_INSTANT = 1e-6
 """Two times of one capture differ by less, s: one of them has been rounded to nanoseconds of UTC."""
-BEGINNING = 1.0
-"""What stands at the beginning of a recording is not looked for any later, s."""
 NEXT_TICK = 0.02
 """A picture's own tick is not later than the one that it was written with, but for rounding; 20 ms is one tick, s."""
 
@@ -54,14 +52,6 @@ class Player:
 
     def close(self) -> None:
         self.recording.close()
-
-
-def rig_time_of_start(recording: Recording) -> float:
-    """Rig time at which the run began, s; 0 where the file has lost it."""
-    for entry in recording.messages([CALIBRATION.name], end=BEGINNING):
-        if isinstance(entry.data, dict):
-            return number(entry.data, "time_s") or 0.0
-    return 0.0
 
 
 def shown(messages: Tick) -> dict[str, Any]:

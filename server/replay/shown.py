@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from control.model import Pose
 from control.snapshot import ZERO, Vector
+from server.recording.paths import Path, path_at
 from server.scene import View
 from server.scene_geometry import SceneGeometry
 from server.scene_robot import ShownRobot
@@ -34,12 +35,9 @@ class Instant:
 
 @dataclass(frozen=True, slots=True)
 class Course:
-    """Where a run went. path: (m, 2) points of its reference, m.  times: (n,) s since its start.
+    """Where a run went. paths: that it was to walk.  times: (n,) s since its start.  places: (n, 2) m."""
 
-    places: (n, 2) m.
-    """
-
-    path: NDArray[np.float64]
+    paths: Sequence[Path]
     times: NDArray[np.float64]
     places: NDArray[np.float64]
 
@@ -64,10 +62,11 @@ class ReplaySource:
 
 def robot_of(tick: Tick | None, course: Course, at: float) -> ShownRobot:
     if tick is None:
-        return ShownRobot(None, 1, 0.0, course.path, course.places[:0])
+        return ShownRobot(None, 1, 0.0, path_at(course.paths, at), course.places[:0])
     pivot = -1 if tick["command"]["pivot"] == -1 else 1
     tilt = math.radians(tick["body_tilt_deg"] or 0.0)
-    return ShownRobot(pose_of(tick["pose"]), pivot, tilt, course.path, course.until(at))
+    path = path_at(course.paths, at)
+    return ShownRobot(pose_of(tick["pose"]), pivot, tilt, path, course.until(at))
 
 
 def pose_of(pose: Mapping[str, float | None] | None) -> Pose | None:

@@ -9,10 +9,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from server.recording.paths import paths_of
 from server.recording.reading import Recording
 from server.replay.overview import series_of
 from server.replay.shown import MM, Course, ReplaySource
-from server.replay.then import reference_points, rig_of
+from server.replay.then import rig_of
 from server.scene_geometry import SceneGeometry, geometry_of
 from server.settings_in_si import coil_set
 
@@ -35,8 +36,7 @@ def course_of(recording: Recording) -> Course:
     columns = [column(series, name) for name in ("time_s", "x_mm", "y_mm")]
     known = np.isfinite(columns).all(axis=0)
     times, x, y = (values[known] for values in columns)
-    path = np.array(reference_points(recording.settings), dtype=float).reshape(-1, 2)
-    return Course(path * MM, times, np.column_stack([x, y]) * MM)
+    return Course(paths_of(recording), times, np.column_stack([x, y]) * MM)
 
 
 def column(series: Mapping[str, Any], name: str) -> NDArray[np.float64]:

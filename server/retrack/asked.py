@@ -1,7 +1,7 @@
 """What another controller would have commanded, asked at each tick of a run and not obeyed.
 
-The run's own controller is made anew and shown the recorded estimates, so that sweeps, pivots and reference go as
-they went. The other one is asked in the very situation that the first one was in at each tick.
+The run is walked again along its recorded estimates and commands, so that sweeps, pivots and reference go as they
+went. Both its own controller, made anew, and the other one are asked in the very situation of each tick.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 from control.controllers import Law
 from control.controllers.controller import Decision, Situation
-from control.model import Pivot, Pose, wrap
+from control.model import PIVOT_A, Pivot, Pose, wrap
 from control.runs import RunRequest, Selection
 from control.snapshot import RigState
 from control.walk import Walk
@@ -20,7 +20,7 @@ from server.retrack.changes import RetrackError
 from server.retrack.recorded_tick import RecordedTick
 from server.retrack.second_look import SecondLook
 from server.settings import MM, RigFile
-from server.settings_in_si import coil_set, gait_model
+from server.settings_in_si import gait_model
 
 SAME_RATE = 1e-6
 """Rates that are closer are the same: they have been to degrees and back, rad/s."""
@@ -43,25 +43,31 @@ class Told:
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """then: what the run's own controller, made anew, tells the field.  now: what the other one would have."""
+    """then: what the run's own controller, made anew, would have told the field.  now: what the other one would."""
 
     then: Told
     now: Told | None
 
 
 class Aside:
-    """A law that asks another one as well, and does what the first one says."""
+    """The run's own law, which is asked and not obeyed either, and another one beside it.
+
+    pose: what the other one takes for the robot's; None where that is not known.  done: what the rig did.
+    """
 
     def __init__(self, law: Law, other: Law) -> None:
         self._law, self._other = law, other
         self.name = law.name
         self.pose: Pose | None = None
-        """What the other one takes for the robot's pose; None where that is not known."""
-        self.answer: Told | None = None
+        self.done = Told(PIVOT_A, 0.0)
+        self.answer: Answer | None = None
 
     def step(self, situation: Situation) -> Decision:
-        self.answer = None if self.pose is None else self._ask(situation, self.pose)
-        return self._law.step(situation)
+        """What the rig did: so the sweeps of the run come out as they did."""
+        decision = self._law.step(situation)
+        now = None if self.pose is None else self._ask(situation, self.pose)
+        self.answer = Answer(_told(decision, situation), now)
+        return replace(decision, pivot=self.done.pivot, rate=self.done.rate, finished=False)
 
     def _ask(self, situation: Situation, pose: Pose) -> Told:
         turned = situation.turned + wrap(pose.heading - situation.pose.heading)
@@ -71,9 +77,14 @@ class Aside:
             raise RetrackError(f"controller {self._other.name!r} raised {error!r}") from error
         if not isinstance(decision, Decision) or not math.isfinite(decision.rate):
             raise RetrackError(f"controller {self._other.name!r} returned {decision!r}")
-        most = situation.gait.max_rate
-        pivot = decision.pivot if situation.may_switch else situation.pivot
-        return Told(pivot, max(-most, min(most, decision.rate)))
+        return _told(decision, situation)
+
+
+def _told(decision: Decision, situation: Situation) -> Told:
+    """What becomes of a decision; a pivot is only taken once a sweep is complete."""
+    most = situation.gait.max_rate
+    pivot = decision.pivot if situation.may_switch else situation.pivot
+    return Told(pivot, max(-most, min(most, decision.rate)))
 
 
 class Asked:
@@ -106,12 +117,14 @@ class Asked:
             self._walk = self._begun(tick.pose, look)
         elif before is not None and before.rig == RigState.HELD and before.pose is not None:
             self._walk.walker.resume(before.pose.heading)
+        elif before is not None and _began_sweep(before, tick, self._walk.walker.sweep.pivot):
+            self._walk.walker.resume(tick.pose.heading)
         return self._step(self._walk, tick, before, look, pose)
 
     def _begun(self, at: Pose, look: SecondLook) -> Walk:
         length = self._rig.robot.length_mm * MM
         walk = Walk("", self._request, length, look.field.pivot, at)
-        walk.workspace = coil_set(self._rig).workspace
+        walk.workspace = 0.5 * self._rig.limits.workspace_mm * MM
         walk.gait_model = gait_model(self._rig)
         walk.put_controllers_into(self._beside)
         return walk
@@ -127,8 +140,17 @@ class Asked:
             return None
         gap = (tick.elapsed or 0.0) if before is None else tick.time - before.time
         self._aside.pose = pose
+        self._aside.done, self._aside.answer = Told(tick.command.pivot, tick.command.rate), None
         try:
-            stride = walk.step(tick.time, gap, tick.pose, look.field, look.perception)
+            walk.step(tick.time, gap, tick.pose, look.field, look.perception)
         except (ControllerFault, ValueError) as error:
             raise RetrackError(f"the run cannot be walked through again: {error}") from error
-        return Answer(Told(stride.pivot, stride.rate), self._aside.answer)
+        return self._aside.answer
+
+
+def _began_sweep(before: RecordedTick, tick: RecordedTick, pivot: Pivot) -> bool:
+    """The rig surely took its next sweep at this tick, whatever the account of the walk that is made anew says.
+
+    That may be a tick late or early, as the heading just before the run's first tick is not recorded.
+    """
+    return tick.command.pivot != pivot or tick.command.rate * before.command.rate < 0.0

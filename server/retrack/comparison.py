@@ -137,7 +137,7 @@ class Comparison:
     """Add every tick since the first picture."""
 
     def __init__(self) -> None:
-        self._ticks = self._pictures = 0
+        self._ticks = self._pictures = self._known = self._known_then = 0
         self._position, self._heading = Spread(), Spread()
         self._error, self._error_then = Spread(), Spread()
         self._eyes, self._eyes_then = Eyes(), Eyes()
@@ -152,8 +152,11 @@ class Comparison:
         self._ticks += 1
         _put(self._position, seen.distance, 1.0 / MM, tick.since_start)
         _put(self._heading, seen.turn, 180.0 / math.pi, tick.since_start)
-        _put(self._error, seen.error, 1.0 / MM, tick.since_start)
-        _put(self._error_then, seen.error_then, 1.0 / MM, tick.since_start)
+        if seen.error is not None and seen.error_then is not None:
+            self._error.add(seen.error / MM, tick.since_start)
+            self._error_then.add(seen.error_then / MM, tick.since_start)
+        self._known += seen.pose is not None
+        self._known_then += tick.pose is not None
         if seen.looked:
             self._pictures += 1
             self._eyes.picture(seen.tracking, sighted=seen.sighted)
@@ -163,17 +166,21 @@ class Comparison:
             self._commands.add(tick, seen.answer)
 
     def to_json(self) -> dict[str, Any]:
-        """Lab units in the names; shares 0 to 1."""
+        """Lab units in the names; shares 0 to 1. The errors are of the ticks at which both know the robot."""
         now, then = self._eyes.to_json(), self._eyes_then.to_json()
         return {
             "ticks": self._ticks,
             "pictures": self._pictures,
             "position_mm": self._position.to_json(),
             "heading_deg": self._heading.to_json(),
+            "known_share": {"then": self._share(self._known_then), "now": self._share(self._known)},
             "mean_error_mm": {"then": self._error_then.mean, "now": self._error.mean},
             **{name: {"then": then[name], "now": now[name]} for name in now},
             "command": self._commands.to_json(),
         }
+
+    def _share(self, count: int) -> float | None:
+        return count / self._ticks if self._ticks else None
 
 
 def _put(spread: Spread, value: float | None, factor: float, time: float) -> None:

@@ -34,7 +34,7 @@ class Busy(Exception):
 
 @dataclass(slots=True)
 class Job:
-    """stage: "working", "done", "failed" or "cancelled", and why in `reason`.  progress: 0 to 1."""
+    """stage: "none", "working", "done", "failed" or "cancelled", and why in `reason`.  progress: 0 to 1."""
 
     id: int
     run: str
@@ -105,7 +105,7 @@ class RetrackDesk:
 
     async def _worked(self, job: Job, path: Path, changes: Changes) -> None:
         process = await asyncio.create_subprocess_exec(
-            *(sys.executable, "-m", "server.retrack", str(path)),
+            *(sys.executable, "-P", "-m", "server.retrack", str(path)),
             stdin=PIPE,
             stdout=PIPE,
             stderr=PIPE,
@@ -136,7 +136,7 @@ async def _heard(process: Process, job: Job) -> None:
     while process.stdout is not None and (line := await process.stdout.readline()):
         said = msgspec.json.decode(line, type=Said)
         job.progress = said.progress
-        if said.comparison is not None:
+        if bytes(said.comparison):
             job.result = said
 
 

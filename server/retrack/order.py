@@ -18,6 +18,6 @@ class Said(msgspec.Struct, frozen=True):
     """One line: how far it is (0 to 1), or the result, whose parts are passed on unread."""
 
     progress: float = 1.0
-    changes: msgspec.Raw = msgspec.Raw(b"null")
-    comparison: msgspec.Raw | None = None
-    series: msgspec.Raw = msgspec.Raw(b"null")
+    changes: msgspec.Raw = msgspec.Raw()
+    comparison: msgspec.Raw = msgspec.Raw()
+    series: msgspec.Raw = msgspec.Raw()

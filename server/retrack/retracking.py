@@ -39,26 +39,40 @@ NO_PICTURES = (
 
 def retrack(path: Path, changes: Changes, watch: Watch | None = None) -> dict[str, Any]:
     """Comparison and series as JSON; raises `RetrackError` in words."""
-    comparison, thinned = Comparison(), Thinned()
-    for seen in looked_at_again(path, changes, watch):
-        comparison.add(seen)
-        thinned.add(seen)
-    return {
-        "changes": changes.to_json(),
-        "comparison": comparison.to_json(),
-        "series": thinned.columns(),
-    }
+    retracked = Retrack(changes)
+    for _ in retracked.ticks(path, watch):
+        continue
+    return retracked.to_json()
 
 
-def looked_at_again(path: Path, changes: Changes, watch: Watch | None = None) -> Iterator[Seen]:
-    """Every tick since the first picture; raises `RetrackError` in words."""
-    try:
-        with Recording.open(path) as recording:
-            yield from _Pass(recording, changes).ticks(watch)
-    except (Unreadable, OSError) as error:
-        raise RetrackError(str(error)) from error
-    if watch is not None:
-        watch(1.0)
+class Retrack:
+    """One second look at a run, and what has come of it so far."""
+
+    def __init__(self, changes: Changes) -> None:
+        self._changes = changes
+        self._comparison, self._thinned = Comparison(), Thinned()
+
+    def ticks(self, path: Path, watch: Watch | None = None) -> Iterator[Seen]:
+        """Every tick since the first picture; raises `RetrackError` in words."""
+        try:
+            with Recording.open(path) as recording:
+                for seen in _Pass(recording, self._changes).ticks(watch):
+                    self._comparison.add(seen)
+                    self._thinned.add(seen)
+                    yield seen
+        except (Unreadable, OSError) as error:
+            raise RetrackError(str(error)) from error
+        if watch is not None:
+            watch(1.0)
+
+    def to_json(self) -> dict[str, Any]:
+        """changes, comparison, series."""
+        which = "then" if self._changes.rig is None else "now"
+        return {
+            "changes": {**self._changes.to_json(), "rig": which},
+            "comparison": self._comparison.to_json(),
+            "series": self._thinned.columns(),
+        }
 
 
 class _Pass:

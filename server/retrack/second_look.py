@@ -63,6 +63,10 @@ class SecondLook:
         self.pose, _ = self.perception.pose_at(tick.time)
 
     def _begin(self, pose: Pose, captured_at: float) -> None:
-        """A run begins with a robot at rest, so what is known of it now is true of the picture too."""
+        """A run begins with a robot at rest, so what is known of it now was true a moment before the picture too.
+
+        Not of the picture's own time: that would count as a sighting in it.
+        """
         self._has_begun = True
-        self.perception.estimator.start(Measurement(pose, captured_at, (0.0, 0.0), (), 0.0))
+        before = math.nextafter(captured_at, -math.inf)
+        self.perception.estimator.start(Measurement(pose, before, (0.0, 0.0), (), 0.0))

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import math
-from collections.abc import Iterable
 from typing import Any, TextIO
 
 from control.model import Pose
@@ -71,11 +70,16 @@ class Thinned:
         return {name: [each[name] for each in self._rows] for name in (self._rows[0] if self._rows else ())}
 
 
-def write_csv(rows: Iterable[Row], file: TextIO) -> None:
+class CsvTable:
     """One line a tick, every digit, nothing where something is unknown."""
-    writer: csv.DictWriter[str] | None = None
-    for each in rows:
-        if writer is None:
-            writer = csv.DictWriter(file, list(each), lineterminator="\n")
-            writer.writeheader()
-        writer.writerow({name: "" if value is None else value for name, value in each.items()})
+
+    def __init__(self, file: TextIO) -> None:
+        self._file = file
+        self._writer: csv.DictWriter[str] | None = None
+
+    def add(self, seen: Seen) -> None:
+        line = row(seen)
+        if self._writer is None:
+            self._writer = csv.DictWriter(self._file, list(line), lineterminator="\n")
+            self._writer.writeheader()
+        self._writer.writerow({name: "" if value is None else value for name, value in line.items()})

@@ -279,17 +279,27 @@ def mortal(library: Library) -> Iterator[ServedRig]:
     library.rig.stop()
 
 
-def test_a_replay_goes_on_where_it_was_when_the_server_comes_back(
-    library: Library, mortal: ServedRig, theatre: Visit
+def test_a_replay_goes_on_where_it_was_when_the_server_comes_back_and_ends_when_its_run_is_gone(
+    library: Library, mortal: ServedRig, theatre: Visit, open_tab: OpenTab
 ) -> None:
     show(theatre.page, library.ids[0])
     expect(bar(theatre.page)).to_contain_text("narrow sweeps")
     page = at_its_start(theatre.page)
     slider(page).press("ArrowRight")
+    other = open_tab(library.address(library.ids[1]), scene=False).page
+    expect(bar(other)).to_contain_text("wide sweeps")
     mortal.kill()
     expect(bar(page).get_by_role("alert")).to_contain_text("cannot be read just now")
+    expect(bar(page)).to_contain_text("The rig itself: not known")
+    library.archive.path_of(library.ids[1]).unlink()
     mortal.start()
     expect(bar(page).get_by_role("alert")).to_have_count(0)
     eventually(lambda: shown_time(page) == 1.0, "the time from before")
     slider(page).press("End")
     eventually(lambda: shown_time(page) > 3.9, "it can be scrubbed again")
+    gone = "The recording cannot be shown"
+    expect(other.get_by_role("alert")).to_contain_text(gone)
+    expect(bar(other)).to_have_count(0)
+    mortal.send("DELETE", f"/runs/{library.ids[0]}")
+    expect(page.get_by_role("alert").filter(has_text=gone)).to_contain_text("was deleted")
+    expect(bar(page)).to_have_count(0)

@@ -82,6 +82,11 @@ def details(page: Page) -> Locator:
     return page.get_by_role("complementary")
 
 
+def show_replay(page: Page, id: str) -> None:
+    page.evaluate("id => void (location.hash = `#replay=${id}`)", id)
+    expect(page.get_by_role("region", name="Replay")).to_contain_text("The rig itself: armed")
+
+
 def visit_runs(library: Library, open_tab: OpenTab, **size: int) -> Visit:
     library.rig.rest()
     visit = open_tab(library.rig.url, scene=False, **size)
@@ -138,29 +143,36 @@ def edit_and_undo(library: Library, page: Page) -> None:
     button(shown, "Undo").click()
     expect(shown.get_by_text("As before")).to_be_visible()
     assert library.rig.ask(f"/runs/{id}")["label"] == "wet plate"
-    shown.get_by_label("Tags", exact=True).fill("demo")
-    shown.get_by_label("Tags", exact=True).press("Enter")
+    shown.get_by_label("Tags", exact=True).press_sequentially("demo,wet,blue,")
+    tags = ["paper", "demo", "wet", "blue"]
+    eventually(lambda: library.rig.ask(f"/runs/{id}")["tags"] == tags, "all tags, however fast they were typed")
     expect(button(shown, "Remove the tag demo")).to_be_visible()
     button(shown, "Pin this run").click()
     expect(button(shown, "Delete…")).to_be_disabled()
     button(shown, "Pin this run").click()
     expect(button(shown, "Delete…")).to_be_enabled()
+    notes = lambda: library.rig.ask(f"/runs/{id}")["notes"]  # noqa: E731
     field(shown, "Notes").fill("water on the plate")
     button(shown, "Close").click()
-    eventually(
-        lambda: library.rig.ask(f"/runs/{id}")["notes"] == "water on the plate",
-        "notes that were typed just before the details were closed",
-    )
+    eventually(lambda: notes() == "water on the plate", "notes from just before the details were closed")
+    names(page).first.press("Enter")
+    field(shown, "Notes").fill("half a litre")
+    page.goto("about:blank")
+    eventually(lambda: notes() == "half a litre", "notes from just before the page was closed")
 
 
-def test_a_run_is_listed_while_it_goes_on_and_started_again(library: Library, open_tab: OpenTab) -> None:
+def test_a_run_is_started_again_which_gives_the_page_back_to_the_rig_and_listed_while_it_goes_on(
+    library: Library, open_tab: OpenTab
+) -> None:
     visit = visit_runs(library, open_tab)
     page = visit.page
     names(page).filter(has_text="dry plate").click()
     shown = details(page)
     expect(shown).to_contain_text("arm the rig first")
     library.rig.send("POST", "/arm")
+    show_replay(page, library.recorded[0])
     button(shown, "Run again").click()
+    expect(page.get_by_role("region", name="Replay")).to_have_count(0)
     expect(page.get_by_role("status")).to_contain_text("running")
     expect(page.locator(".recording-sign")).to_contain_text("REC")
     expect(shown).to_contain_text("Started again")
@@ -205,15 +217,27 @@ def test_runs_are_compared_deleted_and_pruned_and_stop_stays_in_reach(
     button(asked, "Delete").click()
     expect(names(page).filter(has_text="old-001")).to_have_count(0)
     expect(names(page).filter(has_text="old-010")).to_have_count(1)
-    button(page, "Untick").click()
+    library.rig.send("PATCH", "/runs/old-010", {"pinned": False})
+    library.rig.send("DELETE", "/runs/old-010")
+    expect(button(page, "Untick")).to_have_count(0)
+
+    page.get_by_label("Search runs").fill("old-")
+    expect(names(page)).to_have_count(50)
+    button(page, "Show more").scroll_into_view_if_needed()
+    expect(names(page)).to_have_count(OLD_RUNS - 2)
+    oldest = {"older_than_days": A_YEAR.days + OLD_RUNS - 6, "dry_run": False}
+    library.rig.send("POST", "/runs/prune", oldest)
+    expect(names(page).filter(has_text="old-069")).to_have_count(0)
+    button(page, "Show all runs").click()
 
     button(page, "Prune…").click()
     asked.get_by_label("Older than").fill("300")
-    expect(asked).to_contain_text(f"{OLD_RUNS - 8} runs, 0 kB would go")
-    button(asked, f"Delete {OLD_RUNS - 8} runs").click()
+    unpinned = OLD_RUNS - 2 - 6 - 6
+    expect(asked).to_contain_text(f"{unpinned} runs, 0 kB would go")
+    button(asked, f"Delete {unpinned} runs").click()
     expect(asked).to_have_count(0)
     expect(names(page).filter(has_text="old-002")).to_have_count(0)
-    assert library.rig.ask("/runs?text=old-")["total"] == 7
+    assert library.rig.ask("/runs?text=old-")["total"] == 6
 
     for label in LABELS:
         page.get_by_label(f"Select {label}", exact=True).press("Enter")
@@ -222,7 +246,7 @@ def test_runs_are_compared_deleted_and_pruned_and_stop_stays_in_reach(
     assert visit.complaints == []
 
 
-def test_on_a_phone_the_details_are_a_sheet_under_the_bar(library: Library, open_tab: OpenTab) -> None:
+def test_on_a_phone_the_details_are_a_sheet_under_the_bar_that_a_replay_puts_away(library: Library, open_tab: OpenTab) -> None:
     page = visit_runs(library, open_tab, width=390, height=844).page
     names(page).filter(has_text="wet plate").click()
     sheet, bar = details(page).bounding_box(), page.get_by_role("banner").bounding_box()
@@ -235,3 +259,7 @@ def test_on_a_phone_the_details_are_a_sheet_under_the_bar(library: Library, open
     assert page.evaluate("document.documentElement.scrollWidth") <= 390
     button(details(page), "Close").click()
     expect(names(page).filter(has_text="wet plate")).to_be_focused()
+    names(page).filter(has_text="wet plate").click()
+    button(details(page), "Replay").click()
+    expect(page.get_by_role("img", name="Recorded camera picture")).to_be_in_viewport()
+    expect(details(page)).to_have_count(0)

@@ -52,10 +52,12 @@ def test_space_types_inside_a_text_field_and_stops_outside(dashboard: Visit, ser
     eventually(lambda: served.ask("/state")["rig"] == "fault", "the space bar stops and presses nothing")
 
 
-def test_the_question_mark_shows_the_keys(dashboard: Visit) -> None:
+def test_the_question_mark_shows_the_keys_and_leaves_stop_in_reach(dashboard: Visit) -> None:
     page = dashboard.page
     expect(page.get_by_role("status")).to_contain_text("disarmed")
     page.keyboard.press("?")
     expect(page.get_by_role("dialog")).to_contain_text("Escape")
+    page.get_by_role("button", name="STOP", exact=True).click()
+    expect(page.get_by_role("status")).to_contain_text("fault")
     page.get_by_role("button", name="Close").click()
     expect(page.get_by_role("dialog")).to_be_hidden()

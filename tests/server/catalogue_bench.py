@@ -6,7 +6,9 @@ import json
 import random
 import sqlite3
 from collections.abc import Iterator
+from contextlib import closing
 from datetime import UTC, datetime, timedelta
+from multiprocessing.synchronize import Barrier
 from pathlib import Path
 
 from server.catalogue.catalogue import Catalogue
@@ -108,3 +110,20 @@ def tags(runs: int) -> Iterator[tuple[str, str, int]]:
     for index in range(runs):
         kind = KINDS[index % len(KINDS)]
         yield from ((id_of(index), tag, position) for position, tag in enumerate(kind.tags))
+
+
+def schema(path: Path) -> list[tuple[str, str]]:
+    with closing(sqlite3.connect(path)) as database:
+        columns = "SELECT m.name, c.name || ' ' || c.type || ' ' || c.[notnull] || ' ' || c.pk"
+        tables = f"{columns} FROM sqlite_master m, pragma_table_info(m.name) c"
+        indexes = "SELECT name, sql FROM sqlite_master WHERE type = 'index' AND sql IS NOT NULL"
+        return sorted((*database.execute(tables), *database.execute(indexes)))
+
+
+def add_to(data: Path, index: int, together: Barrier, answers) -> None:
+    """One of several programs that begin at once."""
+    together.wait(timeout=30.0)
+    catalogue = Catalogue.open(data)
+    catalogue.add(record(index))
+    catalogue.close()
+    answers.put(catalogue.is_new)

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import base64
 import random
 import threading
 from collections.abc import Iterator
 from dataclasses import replace
-from datetime import timedelta
+from datetime import datetime, timedelta, timezone
 from pathlib import Path
 
 import pytest
@@ -73,7 +74,8 @@ def test_a_run_is_added_only_once(catalogue: Catalogue) -> None:
 
 def test_a_run_can_be_put_in_the_place_of_itself(catalogue: Catalogue) -> None:
     for label in ("one", "two"):
-        catalogue.put(record(1, label=label, tags=("a", "b"), settings={"now": label}))
+        made = record(1, label=label, tags=("a", "b"), settings={"now": label})
+        catalogue.renew(made.id, lambda _, made=made: made)
     [run] = catalogue.page().runs
     assert (run.label, run.tags, catalogue.get(run.id).settings) == ("two", ("a", "b"), {"now": "two"})
 
@@ -176,6 +178,64 @@ def test_a_tag_is_found_whole_and_never_in_another_text(catalogue: Catalogue) ->
 def test_a_cursor_of_nowhere_is_refused_in_words(filled: Catalogue, cursor: str) -> None:
     with pytest.raises(BadCursor, match="begin again without one"):
         filled.page(cursor=cursor)
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        '["2020-01-01T00:00:00+00:00", "x", Infinity]',
+        '["2020-01-01T00:00:00+00:00", "x", 1e400]',
+        '["2020-01-01T00:00:00+00:00", "\\ud800", 3]',
+        '["0001-01-01T00:00:00+23:59", "x", 3]',
+        '["9999-12-31T23:59:59-23:00", "x", 3]',
+        '["2020-01-01T00:00:00", "x", 3]',
+    ],
+)
+def test_a_cursor_that_somebody_has_changed_is_refused_in_words(filled: Catalogue, content: str) -> None:
+    with pytest.raises(BadCursor, match="begin again without one"):
+        filled.page(cursor=base64.urlsafe_b64encode(content.encode()).decode())
+
+
+def test_times_beyond_the_calendar_are_before_or_after_all_runs(filled: Catalogue) -> None:
+    first = datetime(1, 1, 1, tzinfo=timezone(timedelta(hours=10)))
+    last = datetime(9999, 12, 31, 23, tzinfo=timezone(timedelta(hours=-10)))
+    assert filled.page(RunQuery(since=first, until=last)).total == RUNS
+    assert filled.page(RunQuery(until=first)).total == filled.page(RunQuery(since=last)).total == 0
+
+
+def test_what_is_no_text_is_refused_in_words(filled: Catalogue) -> None:
+    for ask in (
+        lambda: filled.page(RunQuery(text="\udcff")),
+        lambda: filled.page(RunQuery(state="\udcff")),
+        lambda: filled.beginning_with("\udcff", 3),
+        lambda: filled.update(ALL[0].id, notes="\udcff"),
+    ):
+        with pytest.raises(CatalogueError, match="is no text; write it anew"):
+            ask()
+
+
+def test_a_nul_hides_neither_what_follows_it_nor_what_is_looked_for(catalogue: Catalogue) -> None:
+    catalogue.add(record(1, notes="before\0after", tags=("oil",)))
+    found = [
+        catalogue.page(query).total
+        for query in (RunQuery(tag="oil"), RunQuery(text="after"), RunQuery(text="\0nothing"))
+    ]
+    assert found == [1, 1, 0]
+    assert catalogue.get(record(1).id).notes == "before\0after"
+
+
+def test_any_number_of_runs_can_be_asked_for(filled: Catalogue) -> None:
+    assert filled.known([str(number) for number in range(300_000)] + ids(ALL)) == set(ids(ALL))
+
+
+def test_it_is_known_which_of_the_own_runs_somebody_has_deleted(tmp_path: Path, catalogue: Catalogue) -> None:
+    for index in range(3):
+        catalogue.add(record(index))
+    other = Catalogue.open(tmp_path)
+    other.delete(record(1).id)
+    other.close()
+    asked = [record(index).id for index in range(5)]
+    assert catalogue.gone(asked) == {record(1).id}
 
 
 def test_totals_are_those_of_all_runs(filled: Catalogue) -> None:

@@ -5,34 +5,27 @@ from __future__ import annotations
 import multiprocessing
 import os
 import resource
+import shutil
 import signal
 import sqlite3
 import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import closing
-from multiprocessing.synchronize import Barrier
 from pathlib import Path
 
 import pytest
 from alembic.autogenerate import compare_metadata
 from alembic.migration import MigrationContext
 from alembic.script import ScriptDirectory
-from catalogue_bench import record
+from catalogue_bench import add_to, record, schema
 from sqlalchemy import create_engine
 
 from server.catalogue.catalogue import Catalogue
 from server.catalogue.errors import CatalogueError
+from server.catalogue.migrations import upgrade as upgrading
 from server.catalogue.migrations.upgrade import configuration, upgrade
 from server.catalogue.opening import NAME
 from server.catalogue.tables import REVISIONS, VERSION, Base
-
-
-def schema(path: Path) -> list[tuple[str, str]]:
-    with closing(sqlite3.connect(path)) as database:
-        columns = "SELECT m.name, c.name || ' ' || c.type || ' ' || c.[notnull] || ' ' || c.pk"
-        tables = f"{columns} FROM sqlite_master m, pragma_table_info(m.name) c"
-        indexes = "SELECT name, sql FROM sqlite_master WHERE type = 'index' AND sql IS NOT NULL"
-        return sorted((*database.execute(tables), *database.execute(indexes)))
 
 
 def migrated(path: Path) -> None:
@@ -81,14 +74,6 @@ def test_a_newer_catalogue_is_refused_and_left_alone(tmp_path: Path) -> None:
     assert (tmp_path / NAME).read_bytes() == before
 
 
-def add_to(data: Path, index: int, together: Barrier, answers) -> None:
-    together.wait(timeout=30.0)
-    catalogue = Catalogue.open(data)
-    catalogue.add(record(index))
-    catalogue.close()
-    answers.put(catalogue.is_new)
-
-
 def test_several_programs_that_make_a_catalogue_at_once_make_one(tmp_path: Path, full: bool) -> None:
     context = multiprocessing.get_context("fork")
     for attempt in range(25 if full else 3):
@@ -108,48 +93,36 @@ def test_several_programs_that_make_a_catalogue_at_once_make_one(tmp_path: Path,
         catalogue.close()
 
 
-def rubbish(path: Path) -> None:
-    path.write_bytes(os.urandom(20_000))
+NEXT_LAYOUT = """
+import sqlalchemy as sa
+from alembic import op
+
+revision, down_revision = "next", "{before}"
+
+def upgrade():
+    with op.batch_alter_table("runs", recreate="always") as runs:
+        runs.alter_column("label", type_=sa.Text)
+"""
 
 
-def torn_in_the_middle(path: Path) -> None:
-    content = bytearray(path.read_bytes())
-    content[5000:20000] = os.urandom(15_000)
-    path.write_bytes(content)
-
-
-def another_program_s(path: Path) -> None:
-    path.unlink()
-    with closing(sqlite3.connect(path)) as database, database:
-        database.execute("CREATE TABLE bookmarks (url TEXT)")
-
-
-@pytest.mark.parametrize("breaking", [rubbish, torn_in_the_middle, another_program_s])
-def test_a_broken_catalogue_is_put_aside_and_a_new_one_made(tmp_path: Path, breaking) -> None:
-    first = Catalogue.open(tmp_path)
-    for index in range(30):
-        first.add(record(index))
-    first.close()
-    breaking(tmp_path / NAME)
-    broken = schema(tmp_path / NAME) if breaking is another_program_s else (tmp_path / NAME).read_bytes()
-    anew = Catalogue.open(tmp_path)
-    assert (anew.is_new, anew.page().total) == (True, 0)
-    assert anew.put_aside is not None
-    assert anew.put_aside.name.startswith(f"{NAME}.broken-")
-    kept = anew.put_aside
-    assert broken == (schema(kept) if breaking is another_program_s else kept.read_bytes())
-    anew.close()
-
-
-@pytest.mark.parametrize("cut", [0, 1, 100, 4096, 10_000])
-def test_a_cut_catalogue_never_ends_the_program(tmp_path: Path, cut: int) -> None:
-    first = Catalogue.open(tmp_path)
-    first.add(record(1))
-    first.close()
-    os.truncate(tmp_path / NAME, cut)
-    anew = Catalogue.open(tmp_path)
-    assert (anew.is_new, anew.page().total) == (True, 0)
-    anew.close()
+def test_a_migration_that_rebuilds_the_table_of_runs_loses_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """SQLite can change a column only by making the table anew, and empties the old one before it drops it."""
+    made = [record(index, tags=("a", "b"), settings={"seed": index}) for index in range(3)]
+    catalogue = Catalogue.open(tmp_path / "data")
+    for run in made:
+        catalogue.add(run)
+    catalogue.close()
+    migrations = Path(shutil.copytree(upgrading.FOLDER, tmp_path / "migrations"))
+    (migrations / "versions" / "next.py").write_text(NEXT_LAYOUT.format(before=VERSION))
+    monkeypatch.setattr(upgrading, "FOLDER", migrations)
+    monkeypatch.setattr("server.catalogue.opening.REVISIONS", (*REVISIONS, "next"))
+    monkeypatch.setattr("server.catalogue.opening.VERSION", "next")
+    later = Catalogue.open(tmp_path / "data")
+    assert [later.get(run.id) for run in made] == made
+    later.close()
+    assert dict(schema(tmp_path / "data" / NAME))["alembic_version"]
 
 
 def test_a_write_waits_for_another_program_and_gives_up_in_words(

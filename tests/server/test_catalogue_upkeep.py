@@ -1,22 +1,18 @@
-"""Runs are deleted whole, kept as long as they should be, and found again when the catalogue is lost."""
+"""Runs are deleted whole, and kept as long as they should be, with what a person has written about them."""
 
 from __future__ import annotations
 
 import json
-import shutil
 from collections.abc import Iterator
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
 import pytest
 from catalogue_bench import record
-from recordings_bench import RecordingsBench, Walk
 
 from server.catalogue.deleting import delete_run, finish_deletions
 from server.catalogue.edits import edit
 from server.catalogue.errors import CatalogueError, NoSuchRun, NotNow
-from server.catalogue.opening import NAME
-from server.catalogue.rebuilding import put_in_order, rebuild
 from server.catalogue.records import RunRecord
 from server.catalogue.retention import Policy, prunable, prune
 from server.catalogue.shelf import EDITS, RECORDING, OpenShelf, file_of
@@ -92,6 +88,25 @@ def test_a_deletion_that_was_cut_short_is_finished(shelf: OpenShelf, file_has_go
     assert (files(shelf), shelf.catalogue.known([run.id])) == (set(), set())
 
 
+class InterruptedShelf:
+    """Another program starts, and finishes deletions, just when files are about to be removed."""
+
+    def __init__(self, shelf: OpenShelf) -> None:
+        self.catalogue = shelf.catalogue
+        self._shelf = shelf
+
+    @property
+    def folder(self) -> Path:
+        finish_deletions(self._shelf)
+        return self._shelf.folder
+
+
+def test_two_programs_may_finish_the_same_deletion(shelf: OpenShelf) -> None:
+    run = put(shelf, 1)
+    assert delete_run(InterruptedShelf(shelf), run.id).id == run.id
+    assert (files(shelf), shelf.catalogue.known([run.id])) == (set(), set())
+
+
 # Keeping -----------------------------------------------------------------------------------------
 
 
@@ -149,101 +164,3 @@ def test_a_run_without_a_recording_is_edited_in_the_catalogue_alone(shelf: OpenS
     edit(shelf, run.id, {"label": "new"})
     assert shelf.catalogue.get(run.id).label == "new"
     assert files(shelf) == {f"{run.id}{RECORDING}"}
-
-
-# Rebuilding --------------------------------------------------------------------------------------
-
-
-@pytest.fixture(scope="module")
-def three_runs(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    bench, data = RecordingsBench(), tmp_path_factory.mktemp("recorded")
-    for index in range(3):
-        bench.record(
-            data, Walk(duration=0.5, frame_rate=4.0, index=index, label=f"walk {index}", tags=("t",))
-        )
-    return data
-
-
-@pytest.fixture
-def recorded(three_runs: Path, tmp_path: Path) -> Path:
-    """A data folder with three short runs."""
-    return Path(shutil.copytree(three_runs, tmp_path / "data"))
-
-
-def catalogued(data: Path) -> dict[str, RunRecord]:
-    shelf = OpenShelf.open(data)
-    try:
-        return {run.id: shelf.catalogue.get(run.id) for run in shelf.catalogue.page().runs}
-    finally:
-        shelf.close()
-
-
-def lose_catalogue(data: Path) -> None:
-    for path in data.glob(f"{NAME}*"):
-        path.unlink()
-
-
-def test_a_lost_catalogue_is_made_anew_from_the_recordings(recorded: Path) -> None:
-    shelf = OpenShelf.open(recorded)
-    edited, *_ = [run.id for run in shelf.catalogue.page().runs]
-    edit(shelf, edited, {"notes": "worth keeping", "tags": ["mine"], "pinned": True})
-    shelf.close()
-    before = catalogued(recorded)
-    lose_catalogue(recorded)
-    shelf = OpenShelf.open(recorded)
-    assert shelf.catalogue.is_new
-    assert put_in_order(shelf) == "there was no catalogue of runs: it was made anew from 3 recordings"
-    assert (rebuild(shelf).renewed, put_in_order(shelf) is None) == (3, False)
-    shelf.close()
-    assert catalogued(recorded) == before
-
-
-def test_a_start_with_a_catalogue_rebuilds_nothing(recorded: Path) -> None:
-    shelf = OpenShelf.open(recorded)
-    assert put_in_order(shelf) == ""
-    shelf.close()
-
-
-def test_a_broken_catalogue_is_named_where_it_is_made_anew(recorded: Path) -> None:
-    lose_catalogue(recorded)
-    (recorded / NAME).write_bytes(b"no database" * 99)
-    shelf = OpenShelf.open(recorded)
-    assert "was damaged (kept as catalogue.sqlite.broken-" in put_in_order(shelf)
-    assert shelf.catalogue.page().total == 3
-    shelf.close()
-
-
-def test_a_rebuild_keeps_what_stands_in_the_catalogue_alone(recorded: Path) -> None:
-    shelf = OpenShelf.open(recorded)
-    first = shelf.catalogue.page().runs[0]
-    shelf.catalogue.update(first.id, notes="only here")
-    unrecorded = put(shelf, 5, recording_state="none")
-    file_of(shelf.folder, unrecorded.id).unlink()
-    done = rebuild(shelf)
-    assert (done.added, done.renewed, done.lost, done.told) == (0, 3, 0, [])
-    assert shelf.catalogue.get(first.id).notes == "only here"
-    assert shelf.catalogue.get(unrecorded.id) == unrecorded
-    shelf.close()
-
-
-def test_a_rebuild_says_what_is_gone_and_what_cannot_be_read(recorded: Path) -> None:
-    shelf = OpenShelf.open(recorded)
-    gone, *_ = [run.id for run in shelf.catalogue.page().runs]
-    file_of(shelf.folder, gone).unlink()
-    file_of(shelf.folder, "20260101-000000-beef").write_bytes(b"no recording")
-    done = rebuild(shelf)
-    assert (done.renewed, done.lost) == (2, 1)
-    assert shelf.catalogue.get(gone).recording_state == "lost"
-    [told] = done.told
-    assert "20260101-000000-beef" in told
-    shelf.close()
-
-
-def test_a_deleted_run_does_not_come_back_with_a_rebuild(recorded: Path) -> None:
-    shelf = OpenShelf.open(recorded)
-    gone, cut_short, kept = [run.id for run in shelf.catalogue.page().runs]
-    delete_run(shelf, gone)
-    shelf.catalogue.hide(cut_short, lambda _: None)
-    rebuild(shelf)
-    shelf.close()
-    assert list(catalogued(recorded)) == [kept]

@@ -5,6 +5,7 @@ import csv
 import io
 import json
 import os
+import time
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -30,6 +31,8 @@ ID = "20261123-093000-a1b2"
 UNRECORDED, DAMAGED = "20261123-093100-0000", "20261123-093200-0000"
 STARTED = datetime(2026, 11, 23, 9, 31, tzinfo=UTC)
 TIMEOUT = 60.0
+GONE_WITHIN = 5.0
+"""A server that is told to end, s (faults.md, row 16)."""
 FILES = {
     "samples.csv": "text/csv; charset=utf-8",
     "samples.parquet": "application/vnd.apache.parquet",
@@ -156,6 +159,30 @@ async def test_an_export_ends_with_its_client(at):
         asked.cancel()
         await asyncio.gather(asked, return_exceptions=True)
     await until(lambda: not exports())
+
+
+async def test_a_server_that_ends_takes_its_exports_with_it_and_says_so(at, serve):
+    rig, archive = Rig(build_machine(RigFile(), realtime=True)), Archive.open(at.archive.folder.parent)
+    async with httpx.AsyncClient(timeout=TIMEOUT) as client:
+        async with serve(create_app(rig, archive)) as ending:
+            address = f"{ending.url}/api/v1/runs/{ID}/samples.mat"
+            asked = [asyncio.create_task(client.get(address)) for _ in range(AT_ONCE + 1)]
+            await until(lambda: len(exports()) == AT_ONCE)
+            began = time.monotonic()
+        assert time.monotonic() - began < GONE_WITHIN
+        assert not exports()
+        for answer in await asyncio.gather(*asked):
+            assert answer.status_code == 503
+            assert "going down" in answer.json()["detail"]
+
+
+async def test_an_export_is_made_wherever_the_server_was_started(at, api, tmp_path, monkeypatch):
+    """Also in a folder with a program of its own that is called as ours is."""
+    (tmp_path / "server").mkdir()
+    (tmp_path / "server" / "__init__.py").write_text("raise SystemExit('another server')")
+    monkeypatch.chdir(tmp_path)
+    answer = await api.get(f"/runs/{ID}/samples.csv")
+    assert answer.status_code == 200, answer.text
 
 
 async def test_what_is_not_there_is_said(api, at):

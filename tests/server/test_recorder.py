@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
 import os
 import threading
+import time
 from dataclasses import replace
-from datetime import UTC, datetime
+from datetime import UTC, datetime, timedelta
 from itertools import pairwise
 
 import numpy as np
@@ -19,13 +21,16 @@ from control.news import Announcement
 from control.runs import Choice, Run, RunRequest, RunState, Selection
 from control.snapshot import NOT_RECORDED
 from server.archive import Archive
+from server.recording import pictures, session
 from server.recording.clock import RunClock
 from server.recording.overview import Overview
 from server.recording.pictures import FrameRate
 from server.recording.reading import Recording
 from server.recording.recorder import TAIL
+from server.recording.recovery import recover
 from tests.server.recorded_walk import outcome_of
 from tests.server.recordings_bench import LENGTH, ZERO, RecordingsBench, Walk
+from vision.encoding import encode_jpeg
 
 RATE = 60.0
 STARTED = datetime(2026, 4, 1, 8, 30, tzinfo=UTC)
@@ -142,6 +147,44 @@ def test_a_run_that_is_not_to_be_recorded_is_listed_all_the_same(hand, archive):
     assert not list(archive.folder.iterdir())
 
 
+def listed(archive, id):
+    """The run, once the recorder has come to listing it."""
+    give_up = time.monotonic() + 10.0
+    while not archive.catalogue.known([id]):
+        assert time.monotonic() < give_up
+        time.sleep(0.005)
+    return archive.catalogue.get(id)
+
+
+@pytest.mark.parametrize("enabled", [True, False])
+def test_a_run_that_goes_on_is_never_taken_for_one_that_was_interrupted(hand, archive, enabled):
+    """Another program that starts meanwhile looks for what was left behind."""
+    run = hand.begin("alive", enabled=enabled)
+    assert listed(archive, "alive").is_going_on
+    hand.walk(run, 0.2)
+    assert recover(archive.folder, archive.catalogue) == []
+    hand.end(run)
+    hand.walk(run, 1.0)
+    assert archive.recorder.written("alive", 10.0)
+    assert recover(archive.folder, archive.catalogue) == []
+    assert archive.catalogue.get("alive").state == "stopped"
+
+
+@pytest.mark.parametrize("enabled", [True, False])
+def test_a_run_whose_row_was_lost_is_listed_again_at_its_end(hand, archive, enabled):
+    run = hand.begin("lost", enabled=enabled)
+    before = listed(archive, "lost")
+    archive.catalogue.delete("lost")
+    hand.walk(run, 0.5)
+    hand.end(run)
+    hand.walk(run, 1.0)
+    assert archive.recorder.written("lost", 10.0)
+    row = archive.catalogue.get("lost")
+    assert (row.state, row.recording_state) == ("stopped", "complete" if enabled else "none")
+    assert (row.label, row.selection, row.settings) == (before.label, before.selection, before.settings)
+    assert row.ended_at is not None
+
+
 def test_what_is_told_before_the_first_tick_is_recorded_too(hand, archive):
     run = hand.begin("early")
     hand.recorder.event(Announcement(ZERO, "warn", "heat", "a coil is warm"))
@@ -244,3 +287,71 @@ def test_an_overview_is_small_evenly_spread_and_complete_at_both_ends(count, mos
     assert len(strides) <= 1
     assert found["error_mm"] == pytest.approx([time * 10 for time in times])
     assert len(overview.sparkline()) == min(len(times), 60)
+
+
+@pytest.mark.parametrize("stamp", [math.inf, -math.inf, math.nan, 1e9, -1e9])
+def test_a_picture_whose_stamp_is_wrong_costs_neither_the_recording_nor_the_pictures_after_it(
+    hand, archive, stamp
+):
+    run = hand.begin("stamped", frames_Hz=60.0)
+    for tick in range(1, 31):
+        snapshot = hand.bench.snapshot(run, tick, tick / RATE, MetricsTally(LENGTH))
+        captured = stamp if tick == 10 else snapshot.time - 0.02
+        hand.recorder.tick(snapshot, Frame(np.zeros((48, 64, 3), np.uint8), captured, tick))
+        time.sleep(0.002)
+    assert archive.recorder.failure == ""
+    archive.recorder.close()
+    outcome = outcome_of(archive.path_of("stamped"))
+    assert (outcome["ticks"], outcome["failure"]) == (30, "")
+    assert 27 <= outcome["frames"] + outcome["frames_left_out"] <= 30
+
+
+def test_a_rig_that_becomes_another_one_ends_the_recording_of_its_last_run(hand, archive):
+    """Its clock starts anew, and its ticks are not those of the run."""
+    run = hand.begin("former")
+    hand.walk(run, 0.5)
+    hand.end(run)
+    hand.recorder.finish()
+    hand.tick = 0
+    hand.walk(run, 0.2)
+    assert archive.recorder.written("former", 10.0)
+    assert archive.recorder.status is NOT_RECORDED
+    ticks = [state["tick"] for state in topics_of(archive, "former", "/state")]
+    assert ticks == list(range(1, 31))
+
+
+def test_the_end_of_a_run_is_dated_by_the_time_since_its_start_whoever_sets_the_clock(hand, archive):
+    """The start is of another year: as if this computer's clock had been set meanwhile."""
+    run = hand.begin("dated")
+    hand.walk(run, 0.5)
+    hand.end(run)
+    archive.recorder.close()
+    ended = archive.catalogue.get("dated").ended_at
+    assert ended is not None
+    assert timedelta(0) <= ended - STARTED < timedelta(seconds=20)
+
+
+def test_a_picture_that_comes_after_the_end_is_counted_and_touches_no_closed_file(
+    hand, archive, monkeypatch, caplog
+):
+    monkeypatch.setattr(session, "LAST_PICTURES", 0.05)
+    may_go_on = threading.Event()
+
+    def encode(image, quality):
+        may_go_on.wait(10.0)
+        return encode_jpeg(image, quality)
+
+    monkeypatch.setattr(pictures, "encode_jpeg", encode)
+    run = hand.begin("late", frames_Hz=60.0)
+    snapshot = hand.bench.snapshot(run, 1, 1.0 / RATE, MetricsTally(LENGTH))
+    hand.recorder.tick(snapshot, Frame(np.zeros((48, 64, 3), np.uint8), snapshot.time, 1))
+    hand.walk(run, 0.5)
+    hand.end(run)
+    hand.walk(run, 1.0)
+    assert archive.recorder.written("late", 10.0)
+    may_go_on.set()
+    archive.recorder.close()
+    assert "mistake" not in caplog.text
+    assert caplog.records == []
+    outcome = outcome_of(archive.path_of("late"))
+    assert (outcome["frames"], outcome["frames_left_out"]) == (0, 1)

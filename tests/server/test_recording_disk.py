@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import fcntl
 import resource
-import threading
 import time
 
 import pytest
@@ -16,13 +15,14 @@ from control.safety import Refused
 from control.simulation.disk_faults import DiskFaults
 from server.archive import Archive
 from server.faulty_disk import FaultyDisk
-from server.recording.disk import LocalDisk, LocalFile
+from server.recording.disk import LocalDisk
 from server.recording.reading import Recording
 from server.recording.recorder import LONGEST_WAIT
 from server.recording_section import RecordingSection
 from tests.server.mcap_doctor import examine
 from tests.server.recorded_walk import outcome_of
 from tests.server.recordings_bench import RecordingsBench, Walk
+from tests.server.stuck_disk import Stuck
 
 LOST_AT_MOST = 0.25 + 2.0 / 60.0
 """Of a run whose disk fails, s: the open chunk, and a tick on its way."""
@@ -142,27 +142,6 @@ def test_a_folder_that_cannot_be_made_is_refused_early(tmp_path):
             archive.recorder.check(RecordingSection())
     finally:
         archive.close()
-
-
-class Stuck(LocalDisk):
-    """A disk whose `sync` waits."""
-
-    def __init__(self):
-        self.may_go_on = threading.Event()
-        self.may_go_on.set()
-
-    def create(self, path):
-        return StuckFile(path, self.may_go_on)
-
-
-class StuckFile(LocalFile):
-    def __init__(self, path, may_go_on):
-        super().__init__(path)
-        self._may_go_on = may_go_on
-
-    def sync(self):
-        self._may_go_on.wait(30.0)
-        super().sync()
 
 
 def test_a_disk_that_hangs_for_a_while_loses_nothing(bench, archive):

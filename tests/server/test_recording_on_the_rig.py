@@ -154,6 +154,20 @@ def test_a_server_that_is_ended_ends_its_run_in_good_order(tmp_path):
         archive.close()
 
 
+def test_a_server_whose_disk_hangs_is_gone_as_soon_and_its_recording_opens(tmp_path):
+    with served(tmp_path, "--sim") as server:
+        server.start_walking()
+        id = server.get("/state")["run"]["id"]
+        server.post("/simulation/faults", {"name": "disk_slow", "parameters": {"delay_s": 60.0}})
+        time.sleep(1.5)  # within a second the disk is waited for
+        began = time.monotonic()
+        server.process.send_signal(signal.SIGTERM)
+        assert server.process.wait(10) == 0
+        assert time.monotonic() - began <= GONE_WITHIN
+    with Recording.open(tmp_path / "recordings" / f"{id}.mcap") as recording:
+        assert recording.tick_at(recording.duration) is not None
+
+
 def run(*arguments):
     answer = CliRunner().invoke(app, ["run", "--sweep", "10", "--duration", "2", "--json", *arguments])
     assert answer.exit_code == 0, answer.output

@@ -1,11 +1,13 @@
 """What a program that was killed leaves behind is made whole again, once, and nothing that can be read is lost."""
 
+import contextlib
 import fcntl
 import multiprocessing
 import os
 import random
 import signal
 from dataclasses import replace
+from datetime import UTC, datetime, timedelta
 
 import pytest
 from mcap.reader import make_reader
@@ -23,6 +25,8 @@ from torn_files import (
 
 from server.archive import Archive
 from server.catalogue.catalogue import Catalogue
+from server.catalogue.deleting import delete_run
+from server.recording.presence import Presence
 from server.recording.reading import Recording
 from server.recording.recovery import is_being_written, recover
 
@@ -122,7 +126,7 @@ def test_figures_counted_again_from_the_ticks_are_those_of_the_run(archive, reco
 
 def test_a_run_that_had_ended_keeps_its_outcome(archive, torn, recorded):
     with Catalogued(recorded) as record:
-        archive.catalogue.put(replace(record, recording_state="writing"))
+        archive.catalogue.renew(record.id, lambda _: replace(record, recording_state="writing"))
     recover(archive.folder, archive.catalogue)
     found = archive.catalogue.get(torn.stem)
     assert (found.state, found.metrics, found.ended_at) == ("finished", record.metrics, record.ended_at)
@@ -157,6 +161,37 @@ def test_a_file_that_somebody_writes_is_left_alone(archive, torn):
     assert archive.catalogue.get(torn.stem).state == "running"
 
 
+def test_a_run_that_is_walked_unrecorded_is_left_alone_as_long_as_its_program_lives(archive, torn):
+    torn.unlink()
+    archive.catalogue.update(torn.stem, recording_state="none")
+    with walked_by_another_program(archive.folder, torn.stem):
+        assert recover(archive.folder, archive.catalogue) == []
+        assert archive.catalogue.get(torn.stem).state == "running"
+    (done,) = recover(archive.folder, archive.catalogue)
+    assert done.id == torn.stem
+    assert archive.catalogue.get(torn.stem).state == "interrupted"
+    assert list(archive.folder.iterdir()) == []
+
+
+def test_a_run_that_began_before_the_clock_was_put_back_is_ended_all_the_same(archive, torn):
+    archive.catalogue.update(torn.stem, started_at=datetime.now(UTC) + timedelta(days=3))
+    torn.unlink()
+    assert len(recover(archive.folder, archive.catalogue)) == 1
+    assert archive.catalogue.get(torn.stem).state == "interrupted"
+
+
+def test_a_run_that_is_deleted_while_it_is_recovered_stays_deleted(archive, torn):
+    archive.catalogue.update(torn.stem, state="interrupted", recording_state="recovered")
+
+    def delete_once():
+        if archive.catalogue.known([torn.stem]):
+            delete_run(archive, torn.stem)
+
+    (done,) = recover(archive.folder, archive.catalogue, delete_once)
+    assert "was deleted while" in str(done)
+    assert (list(archive.folder.iterdir()), archive.catalogue.page().total) == ([], 0)
+
+
 def test_a_file_of_which_nothing_can_be_read_is_kept_under_another_name(archive, torn):
     torn.write_bytes(torn.read_bytes()[:400])
     (done,) = recover(archive.folder, archive.catalogue)
@@ -166,7 +201,7 @@ def test_a_file_of_which_nothing_can_be_read_is_kept_under_another_name(archive,
     assert kept.stat().st_size == 400
     assert not torn.exists()
     record = archive.catalogue.get(torn.stem)
-    assert (record.state, record.recording_state) == ("interrupted", "lost")
+    assert (record.state, record.recording_state, record.size_bytes) == ("interrupted", "lost", 400)
 
 
 def test_a_damaged_piece_is_left_out_and_said(archive, torn):
@@ -206,7 +241,15 @@ def test_a_full_disk_leaves_the_torn_file_as_it_is_and_says_so(archive, torn):
     assert _in_child(_recover_with_little_room, torn) == 0
     assert torn.read_bytes() == data
     assert [path.name for path in archive.folder.iterdir()] == [torn.name]
+    meanwhile = archive.catalogue.get(torn.stem)
+    assert (meanwhile.state, meanwhile.is_going_on) == (
+        "interrupted",
+        False,
+    )  # so it may be deleted to make room
+    assert meanwhile.size_bytes == len(data)
     assert recover(archive.folder, archive.catalogue)[0].is_recovered
+    assert archive.catalogue.get(torn.stem).metrics == outcome_of(torn)["metrics"]
+    assert archive.catalogue.get(torn.stem).ended_at is not None
 
 
 def _recover_with_little_room(torn):
@@ -258,6 +301,28 @@ def _die_at(torn, chunk):
 
     catalogue = Catalogue.open(torn.parent.parent)
     recover(torn.parent, catalogue, between)
+
+
+@contextlib.contextmanager
+def walked_by_another_program(folder, id):
+    """One that records nothing, and that is killed in the end."""
+    context = multiprocessing.get_context("fork")
+    begun = context.Event()
+
+    def walk():
+        presence = Presence(folder, id)
+        begun.set()
+        signal.pause()
+        presence.close()
+
+    child = context.Process(target=walk)
+    child.start()
+    try:
+        assert begun.wait(30.0)
+        yield
+    finally:
+        child.kill()
+        child.join()
 
 
 def _in_child(work, *arguments):

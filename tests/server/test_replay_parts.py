@@ -22,7 +22,7 @@ TICK = {
 
 def course(length=100):
     times = np.arange(length, dtype=float)
-    return Course(np.zeros((2, 2)), times, np.column_stack([times, -times]) * 1e-3)
+    return Course([(0.0, np.zeros((2, 2)))], times, np.column_stack([times, -times]) * 1e-3)
 
 
 def test_the_differences_of_two_rig_files_are_named_with_both_values():

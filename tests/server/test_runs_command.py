@@ -105,6 +105,27 @@ def test_in_an_empty_folder_there_is_no_last_run(tmp_path: Path) -> None:
     assert "there is no run yet" in refused(tmp_path, 2, "show", "last")
 
 
+def test_what_is_no_text_or_no_time_is_refused_in_words(data: Path) -> None:
+    assert "'\\udcff' is no text" in refused(data, 1, "show", "\udcff")
+    assert "'\\udcff' is no text" in refused(data, 1, "list", "--text", "\udcff")
+    assert "is no time" in refused(data, 2, "list", "--since", "0001-01-01")
+
+
+def test_an_id_is_enough_where_others_begin_with_it(data: Path) -> None:
+    shelf = OpenShelf.open(data)
+    for index in range(10):
+        shelf.catalogue.add(record(20 + index, id="walk" + f"-{index}" * bool(index)))
+    shelf.close()
+    assert json.loads(answer(data, "show", "walk", "--json"))["id"] == "walk"
+
+
+def test_nobody_takes_a_lost_catalogue_for_there_being_no_runs(data: Path) -> None:
+    (data / "catalogue.sqlite").write_bytes(b"no database" * 99)
+    told = " ".join(command(data, "list").stderr.split())
+    assert "the catalogue of runs was damaged; it is kept as" in told
+    assert "there are recordings: `pivotrig runs rebuild` lists them" in told
+
+
 def test_a_run_is_shown_whole_and_its_settings_when_asked_for(data: Path) -> None:
     plain = command(data, "show", record(2).id)
     assert "metrics.mean_error_mm" in plain.stdout

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import asyncio
 import json
+from datetime import UTC, datetime
 
 import httpx
 import pytest
 from catalogue_bench import record
 
-from server.catalogue.shelf import file_of
+from control.runs import Run, RunRequest, RunState, Selection
+from server.catalogue.deleting import delete_run
+from server.catalogue.shelf import OpenShelf, file_of
 
 pytestmark = pytest.mark.anyio
 
@@ -224,6 +227,22 @@ async def test_a_run_that_goes_on_is_listed_first_and_cannot_be_deleted(at, page
     assert (await page.delete(f"/runs/{id}")).status_code == 204
     assert (await page.get(f"/runs/{id}")).status_code == 404
     assert labels(await page.get("/runs", params={"tag": "live"})) == []
+
+
+async def test_what_another_program_deletes_leaves_this_session_s_list_too(at, page):
+    selection = Selection()
+    run = Run("walked-here", RunRequest(selection), RunState.STOPPED, datetime.now(UTC))
+    at.rig.runs.start(run)
+    assert (await page.get("/runs")).json()["runs"][0]["id"] == run.id
+    await asyncio.to_thread(at.archive.catalogue.add, record(1, id=run.id, state="stopped", pinned=False))
+    other = OpenShelf.open(at.archive.folder.parent)
+    delete_run(other, run.id)
+    other.close()
+    assert (await page.get(f"/runs/{run.id}")).status_code == 404
+    listing = (await page.get("/runs")).json()
+    assert run.id not in [each["id"] for each in listing["runs"]]
+    assert listing["total"] == listing["totals"]["runs"]
+    assert run.id not in [each.id for each in at.rig.runs]
 
 
 async def test_without_a_catalogue_this_session_s_runs_are_listed(at, page):

@@ -1,6 +1,7 @@
 """What a server does for the archive after it has begun to serve: mend what is torn, delete what is too old."""
 
 import asyncio
+import json
 import os
 
 import pytest
@@ -65,9 +66,34 @@ async def test_after_a_run_the_oldest_make_room(api, at):
     try:
         await until(api, rig="disarmed", tracking="locked", faults=[])
         await arm(api)
-        id = (await act(api, "/runs", 201))["id"]
-        await until_gone(api, 0.2)
-        await act(api, "/runs/current/stop")
-        await gone(at.archive, id)
+        async with at.socket("/api/v1/telemetry?rate_Hz=1") as telemetry:
+            id = (await act(api, "/runs", 201))["id"]
+            await until_gone(api, 0.2)
+            await act(api, "/runs/current/stop")
+            await gone(at.archive, id)
+            assert (await heard(telemetry, "pruned"))["runs"] == 1
+        assert id not in [run["id"] for run in (await api.get("/runs")).json()["runs"]]
     finally:
         at.rig.machine.settings = settings
+
+
+async def heard(telemetry, event):
+    """What the page of a person who watches is told."""
+    async with asyncio.timeout(TIMEOUT):
+        while True:
+            message = json.loads(await telemetry.recv())
+            if message["type"] == "run" and message["event"] == event:
+                return message
+
+
+async def test_a_catalogue_that_is_lost_under_the_server_is_filled_again(at, api, monkeypatch):
+    monkeypatch.setattr("server.upkeep.LOOK_AGAIN", 0.05)
+    archive = at.archive
+    await asyncio.to_thread(walked, archive.folder.parent, "kept")
+    at.rig.announce("info", "test", "the disk has been tidied")  # from the next line on the new pace counts
+    async with at.socket("/api/v1/telemetry?rate_Hz=1") as telemetry:
+        for end in ("", "-wal", "-shm"):
+            archive.catalogue.path.with_name(archive.catalogue.path.name + end).unlink(missing_ok=True)
+        assert (await api.get("/runs")).json()["total"] == 0
+        await heard(telemetry, "listed")
+    assert "kept" in [run["id"] for run in (await api.get("/runs")).json()["runs"]]

@@ -2,6 +2,7 @@
 
 import io
 import itertools
+from pathlib import Path
 
 import av
 import numpy as np
@@ -30,7 +31,7 @@ def grey(level, size=(64, 48)):
     return np.full((height, width, 3), level, np.uint8)
 
 
-def played(film: str | io.BytesIO):
+def played(film: str | Path | io.BytesIO):
     """Time (s) and mean grey of each picture of a film."""
     with av.open(film, "r") as container:
         return [
@@ -93,6 +94,13 @@ def test_a_film_in_a_file_has_its_index_in_front(tmp_path):
         shot(film, UNEVEN)
     written = (tmp_path / "film.mp4").read_bytes()
     assert 0 < written.index(b"moov") < written.index(b"mdat")
+
+
+def test_a_film_may_have_any_name_that_a_file_may_have(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    with film_file(Path("at 12:30 100%d.mp4")) as film:
+        shot(film, UNEVEN)
+    assert len(played(tmp_path / "at 12:30 100%d.mp4")) == len(UNEVEN)
 
 
 def test_a_film_that_is_sent_can_be_played_as_far_as_it_came():

@@ -1,6 +1,7 @@
 /** STOP by key from anywhere on the page, and `?` for the sheet of keys. */
+import { Ask } from "../ask.js";
 import { stopNow } from "../live/actions.js";
-import { html, useEffect, useRef } from "../view.js";
+import { html, useEffect, useState } from "../view.js";
 
 const KEYS = [
   ["Escape", "STOP: coils to zero, from anywhere, also with this sheet open"],
@@ -14,7 +15,8 @@ const KEYS = [
 ];
 
 const TEXT_INPUTS = "textarea, [contenteditable=true], input:not([type=checkbox]):not([type=radio]):not([type=button]):not([type=range])";
-export const isTyping = (event) => event.target instanceof event.view.Element && event.target.matches(TEXT_INPUTS);
+/** Also for what a browser itself puts into a field, which comes as a key without a name or a window. */
+export const isTyping = (event) => event.target.matches?.(TEXT_INPUTS) ?? false;
 const isStop = (event) => event.key === "Escape" || (event.key === " " && !isTyping(event));
 
 function onKeyDown(event) {
@@ -34,26 +36,22 @@ export function stopOnKeysIn(target) {
   target.addEventListener("keyup", onKeyUp, true);
 }
 
+const isAsked = () => document.querySelector("dialog[open]") !== null;
+
 export function KeySheet() {
-  const dialog = useRef(null);
+  const [open, setOpen] = useState(false);
+  const close = () => setOpen(false);
   useEffect(() => {
-    const open = (event) => {
-      if (event.key === "?" && !isTyping(event)) dialog.current.showModal();
-    };
-    addEventListener("keydown", open);
-    return () => removeEventListener("keydown", open);
-  }, []);
-  useEffect(() => {
-    const close = (event) => event.key === "Escape" && dialog.current.close();
-    addEventListener("keydown", close, true);
-    return () => removeEventListener("keydown", close, true);
+    const onKey = (event) => event.key === "?" && !isTyping(event) && !isAsked() && setOpen(true);
+    addEventListener("keydown", onKey);
+    return () => removeEventListener("keydown", onKey);
   }, []);
   return html`
-    <button class="quiet" type="button" aria-haspopup="dialog" onClick=${() => dialog.current.showModal()}>Keys <kbd>?</kbd></button>
-    <dialog ref=${dialog} aria-labelledby="keys-title">
-      <h2 id="keys-title">Keys</h2>
-      <dl class="keys">${KEYS.map(([key, text]) => html`<div><dt><kbd>${key}</kbd></dt><dd>${text}</dd></div>`)}</dl>
-      <form method="dialog"><button type="submit">Close</button></form>
-    </dialog>
+    <button class="quiet" type="button" aria-haspopup="dialog" onClick=${() => setOpen(true)}>Keys <kbd>?</kbd></button>
+    ${open && html`
+      <${Ask} title="Keys" close=${close}>
+        <dl class="keys">${KEYS.map(([key, text]) => html`<div><dt><kbd>${key}</kbd></dt><dd>${text}</dd></div>`)}</dl>
+        <button type="button" data-first onClick=${close}>Close</button>
+      <//>`}
   `;
 }

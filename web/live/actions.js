@@ -10,6 +10,7 @@ const pause = (duration) => new Promise((resolve) => setTimeout(resolve, duratio
 
 /** Zero now: from any state, tried again when the network swallows it. */
 export async function stopNow() {
+  set({ consentAsked: false });
   for (let attempt = 0; attempt < STOP_TRIES; attempt += 1) {
     try {
       await post("/estop", {}, { keepalive: true, priority: "high" });

@@ -1,4 +1,5 @@
 /** Keeps the telemetry stream open, feeds ticks and store from it, and loads what the page is made from. */
+import { endIfReplayed } from "../replay/replay.js";
 import { reloadIfInspected } from "../runs/inspected.js";
 import { hearOfRun, loadRuns } from "../runs/listing.js";
 import { get, say, set } from "../store.js";
@@ -81,6 +82,7 @@ const handlers = {
     else if (event === run?.state) showRunPath(null);
     hearOfRun(message);
     reloadIfInspected(message);
+    endIfReplayed(message);
   },
   event(event) {
     set({ events: [event, ...get().events].slice(0, EVENTS_KEPT) });

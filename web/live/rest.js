@@ -10,6 +10,7 @@ export class Problem extends Error {
 }
 
 const UNREACHABLE = "The server does not answer; nothing was changed.";
+const BROKEN_OFF = "The server's answer broke off.";
 
 /** ["gait", "sweep_deg"] and ["trajectory", "parameters", "points_mm", 3, 0] as a part and one of its fields. */
 const dotted = (location) => (location ?? []).filter((part) => part !== "parameters").slice(0, 2).join(".");
@@ -30,7 +31,10 @@ async function request(path, options) {
     throw new Problem(UNREACHABLE);
   });
   if (!response.ok) throw await problemOf(response);
-  return response.status === 204 ? null : response.json();
+  if (response.status === 204) return null;
+  return response.json().catch(() => {
+    throw new Problem(BROKEN_OFF);
+  });
 }
 
 const sending = (method) => (path, body = {}, more = {}) =>

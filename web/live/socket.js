@@ -16,7 +16,7 @@ function causeOf(event) {
 /**
  * @param {string} path
  * @param {{message: (data: any, send: (text: string) => void) => void, open?: () => void,
- *          lost?: (cause: string, retryAt: number) => void}} handlers
+ *          lost?: (cause: string, retryAt: number, code: number | null) => void}} handlers
  * @returns {{close: () => void, retry: () => void, abandon: (cause: string) => void}}
  */
 export function keepOpen(path, handlers) {
@@ -36,16 +36,16 @@ export function keepOpen(path, handlers) {
       delay = FIRST_DELAY_MS;
       handlers.message(event.data, (text) => own.readyState === WebSocket.OPEN && own.send(text));
     };
-    own.onclose = (event) => own === socket && lose(causeOf(event));
+    own.onclose = (event) => own === socket && lose(causeOf(event), event.code);
   }
 
-  function lose(cause) {
+  function lose(cause, code = null) {
     socket = null;
     if (closed) return;
     const wait = delay * (0.8 + 0.4 * Math.random());
     delay = Math.min(delay * GROWTH, LONGEST_DELAY_MS);
-    handlers.lost?.(cause, performance.now() + wait);
     timer = setTimeout(connect, wait);
+    handlers.lost?.(cause, performance.now() + wait, code);
   }
 
   // A dead network can keep a socket in its closing handshake for minutes: it is let go at once.

@@ -3,6 +3,7 @@ import { stateWord } from "../bar/bar.js";
 import { useStore } from "../store.js";
 import { html, useEffect, useRef } from "../view.js";
 import { closeReplay, useReplay } from "./replay.js";
+import { RetrackButton } from "./retrack.js";
 import { Scrubber } from "./scrubber.js";
 import { Badge, Line } from "./signs.js";
 import { Transport } from "./transport.js";
@@ -10,6 +11,8 @@ import { Transport } from "./transport.js";
 export function ReplayBar() {
   const status = useReplay((replay) => replay.status);
   const bar = useRef(null);
+  // In place of the button that has opened it: the player is what comes next.
+  useEffect(() => bar.current.focus({ preventScroll: true }), []);
   useEffect(() => {
     const root = document.documentElement.style;
     const watch = new ResizeObserver(() => root.setProperty("--replay-height", `${bar.current?.offsetHeight ?? 0}px`));
@@ -20,11 +23,12 @@ export function ReplayBar() {
     };
   }, []);
   return html`
-    <section class="replay-bar" aria-label="Replay" ref=${bar}>
+    <section class="replay-bar" aria-label="Replay" tabindex="-1" ref=${bar}>
       <div class="replay-head">
         <${Badge} />
         ${status === "loading" ? html`<span class="soft">Reading the recording…</span>` : html`<${Names} />`}
         <${RigMeanwhile} />
+        ${status !== "loading" && html`<${RetrackButton} />`}
         <button class="replay-close" type="button" onClick=${closeReplay}>Back to live</button>
       </div>
       <${Trouble} />
@@ -49,7 +53,7 @@ const QUIET = ["disarmed", "connecting"];
 
 /** Nobody shall forget that the rig itself is up to something. */
 function RigMeanwhile() {
-  const word = useStore((state) => stateWord(state.tick));
+  const word = useStore((state) => (state.connection.status === "lost" ? "not known" : stateWord(state.tick)));
   if (QUIET.includes(word)) return null;
   return html`<p class="replay-meanwhile" role="note" data-state=${word}>The rig itself: <strong>${word}</strong></p>`;
 }

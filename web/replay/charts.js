@@ -8,7 +8,9 @@ import { Badge, Line, stamp } from "./signs.js";
 import { wholeRun } from "./timeline.js";
 
 export function ReplayCharts() {
-  const runs = useReplay((replay) => replay.runs) ?? [];
+  const recorded = useReplay((replay) => replay.runs) ?? [];
+  const again = useReplay((replay) => replay.second?.series) ?? null;
+  const runs = useMemo(() => (again ? [...recorded, seenAgain(recorded[0], again)] : recorded), [recorded, again]);
   const zoom = useReplay((replay) => replay.zoom);
   const closer = useReplay((replay) => replay.closer);
   const source = useMemo(() => wholeRun(runs), [runs]);
@@ -25,6 +27,9 @@ export function ReplayCharts() {
     </section>
   `;
 }
+
+/** The second look at a run, as a run of its own beside it. */
+const seenAgain = (run, series) => ({ id: "again", name: `${run.name}, seen again`, series });
 
 /** What is shown, and how to get from a part to the whole. */
 function Range({ zoom, runs }) {

@@ -9,6 +9,8 @@ const PERIOD_MS = 33;
 const PATIENCE_MS = 400;
 /** Before each picture: which run it is of, and a reserved number, both unsigned 32 bits, little endian. */
 const HEADER_BYTES = 8;
+/** How the server closes the line to a recording that is not there, or that nobody can read. */
+const NOT_THERE = 4404;
 
 /** The newest answer: {at_s, ticks: [tick or null per run], pictures: [{time_s, captured_s, tick} or null per run]}. */
 export const answer = { at_s: 0, ticks: [], pictures: null };
@@ -63,9 +65,11 @@ function showPicture(index, picture) {
   pictureListeners.get(index)?.(picture);
 }
 
-export function openLine(ids) {
+/** notThere: hears why when the recordings are gone, and there is nothing to wait for. */
+export function openLine(ids, notThere) {
   const query = ids.map((id) => `run=${encodeURIComponent(id)}`).join("&");
-  socket = keepOpen(`/api/v1/replay?${query}`, { message: receive, lost });
+  const lose = (cause, _, code) => (code === NOT_THERE ? notThere(cause) : lost(cause));
+  socket = keepOpen(`/api/v1/replay?${query}`, { message: receive, lost: lose });
   forgetTime = onTime(ask);
   waitWhile(() => send === null || (waiting && performance.now() - asked.at > PATIENCE_MS));
 }
@@ -115,7 +119,10 @@ const handlers = {
 
 async function receivePicture(blob) {
   const abouts = answer.pictures;
+  const line = socket;
   const header = new DataView(await blob.slice(0, HEADER_BYTES).arrayBuffer());
+  // Of a replay that was closed meanwhile.
+  if (line !== socket) return;
   const index = header.getUint32(0, true);
   const image = blob.slice(HEADER_BYTES, blob.size, "image/jpeg");
   showPicture(index, { image, about: abouts?.[index] ?? null });

@@ -2,7 +2,7 @@
 import { projection } from "../camera/projection.js";
 import { get } from "../store.js";
 import { answer, onAnswer, onPicture } from "./line.js";
-import { mayHavePictures, trailTo } from "./recording.js";
+import { mayHavePictures, pathAt, trailTo } from "./recording.js";
 
 const PLATE = { light: { ground: "#dfe4ea", plate: "#f7f9fb", edge: "#8a95a3" }, dark: { ground: "#10151b", plate: "#1f262d", edge: "#6d7986" } };
 const DARK = matchMedia("(prefers-color-scheme: dark)");
@@ -31,7 +31,7 @@ export function recordedPictures(index) {
       const tick = about?.tick ?? answer.ticks[index] ?? null;
       const time = about?.tick ? about.time_s : answer.at_s;
       if (!run) return { path: null, trail: [], tick: null };
-      return { path: run.path, trail: trailTo(run, time, tick?.pose), tick, length_mm: run.length_mm };
+      return { path: pathAt(run, time), trail: trailTo(run, time, tick?.pose), tick, length_mm: run.length_mm };
     },
   };
 }

@@ -23,7 +23,7 @@ export function recordingOf(run, overview) {
     frames: overview.frames ?? null,
     events: overview.events ?? [],
     isWhole: overview.is_whole !== false,
-    path: overview.reference_points_mm ?? null,
+    paths: overview.paths ?? [],
     half_mm: overview.workspace?.half_mm ?? HALF_PLATE_MM,
     length_mm: overview.robot?.length_mm,
     camera: overview.camera ?? viewFromAbove(HALF_PLATE_MM),
@@ -68,6 +68,9 @@ function viewFromAbove(half_mm) {
     },
   };
 }
+
+/** The path that was to be walked at a time, [[x, y]] in mm: another one may have been chosen on the way. */
+export const pathAt = ({ paths }, time) => (paths.findLast((path) => path.time_s <= time) ?? paths[0])?.points_mm ?? null;
 
 /** Index of the last time that is not after `time`; −1 before the first. */
 export function indexAt(times, time) {

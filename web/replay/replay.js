@@ -1,6 +1,7 @@
 /** Opens recordings in the page, in place of the rig, and gives the page back to the rig. */
 import { closeSetup } from "../calibration/setup.js";
 import { Problem, read } from "../live/rest.js";
+import { SHEET } from "../runs/sheet.js";
 import { get, say, set, useStore } from "../store.js";
 import { goTo, idsInAddress, leaveQuietly, MOST, onAddress } from "./address.js";
 import { closeLine, openLine } from "./line.js";
@@ -19,6 +20,8 @@ const OPENING = {
   loop: null, zoom: null,
   /** The curves of what the charts show, one a run, where the whole run's are too coarse for it (closer.js). */
   closer: null,
+  /** A second look at the pictures of the one run (retracked.js). */
+  second: null,
 };
 
 export const useReplay = (select) => useStore((state) => (state.replay ? select(state.replay) : null));
@@ -59,6 +62,8 @@ function end() {
 
 async function begin(ids) {
   closeSetup();
+  // It would cover what is asked for.
+  if (SHEET.matches) set({ inspected: null });
   scrollTo({ top: 0 });
   const opening = { ...OPENING, ids };
   set({ replay: opening });
@@ -67,7 +72,7 @@ async function begin(ids) {
     if (get().replay === opening) start(opening, runs);
   } catch (problem) {
     if (!(problem instanceof Problem)) throw problem;
-    if (get().replay === opening) giveUp(problem);
+    if (get().replay === opening) giveUp(problem.message);
   }
 }
 
@@ -81,12 +86,17 @@ function start(opening, runs) {
   const duration_s = Math.max(...runs.map((run) => run.duration_s));
   set({ replay: { ...opening, runs, duration_s } });
   restart();
-  openLine(opening.ids);
+  openLine(opening.ids, giveUp);
   play();
 }
 
-function giveUp(problem) {
-  say(`The recording cannot be shown: ${problem.message}`);
+/** Somebody has deleted a run: it cannot be shown any longer. */
+export function endIfReplayed({ event, run }) {
+  if (event === "deleted" && get().replay?.ids.includes(run.id)) giveUp(`the run ${run.id} was deleted.`);
+}
+
+function giveUp(cause) {
+  say(`The recording cannot be shown: ${cause}`);
   leaveQuietly();
   end();
 }

@@ -77,7 +77,8 @@ function Thumb({ duration }) {
   const line = useRef(null);
   const time = useTime();
   useEffect(() => {
-    const place = (at) => void (line.current.style.left = share(at, duration));
+    const { style } = line.current;
+    const place = (at) => void (style.left = share(at, duration));
     place(now_s());
     return onTime(place);
   }, [duration]);

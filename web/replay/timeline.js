@@ -49,7 +49,8 @@ function wordsFor(splits) {
 
 /** [times, values…], one a curve, in the order of the curves. */
 function columnsOf(runs, curves) {
-  const shown = get().replay?.closer ?? runs.map(({ series }) => series);
+  const closer = get().replay?.closer ?? [];
+  const shown = runs.map(({ series }, index) => closer[index] ?? series);
   if (shown.length === 1) return [shown[0].time_s, ...curves.map(({ column }) => shown[0][column])];
   const tables = shown.map((series, index) => [series.time_s, ...curves.filter(({ run = 0 }) => run === index).map(({ column }) => series[column])]);
   const [times, ...joined] = uPlot.join(tables);

@@ -1,6 +1,6 @@
 /** Before runs are deleted: which ones, and how much that is. Pinned ones and one that goes on stay. */
+import { Ask } from "../ask.js";
 import { html, useState } from "../view.js";
-import { Ask } from "./ask.js";
 import { deleteRuns } from "./inspected.js";
 import { bytes, counted, nameOf } from "./words.js";
 

@@ -1,5 +1,5 @@
 /** Everything about one run: beside the list, on a phone a sheet under the bar. */
-import { openReplay } from "../replay/replay.js";
+import { closeReplay, openReplay } from "../replay/replay.js";
 import { useStore } from "../store.js";
 import { html, useEffect, useRef, useState } from "../view.js";
 import { DeleteDialog } from "./delete.js";
@@ -10,14 +10,13 @@ import { Figure } from "./figure.js";
 import { closeDetails, inspect, pin, runAgain, useInspected, wholeRun } from "./inspected.js";
 import { NOT_PINNED, Pin, PINNED } from "./pin.js";
 import { Differences, Settings } from "./settings.js";
+import { SHEET } from "./sheet.js";
 import { exactly, nameOf, partName, remarks, whyNothingToReplay } from "./words.js";
-
-/** The details cover the list: the focus goes to them. */
-export const SHEET = matchMedia("(max-width: 699px)");
 
 export function Details() {
   const inspected = useInspected();
   const title = useRef(null);
+  // A sheet covers the list: the focus goes to it.
   useEffect(() => void (SHEET.matches && title.current?.focus()), []);
   const run = inspected && wholeRun(inspected);
   if (!inspected) return null;
@@ -68,7 +67,7 @@ function Buttons({ run, working }) {
   return html`
     <div class="run-buttons">
       <button class="next" type="button" disabled=${unsaved !== ""} title=${unsaved} onClick=${() => openReplay([run.id])}>Replay</button>
-      <button type="button" disabled=${notNow !== "" || working !== ""} title=${notNow} onClick=${() => runAgain(run)}>Run again</button>
+      <button type="button" disabled=${notNow !== "" || working !== ""} title=${notNow} onClick=${() => again(run)}>Run again</button>
       <${Downloads} run=${run} why=${unsaved} />
       <button type="button" disabled=${kept !== ""} title=${kept} onClick=${() => ask(true)}>Delete…</button>
     </div>
@@ -76,6 +75,9 @@ function Buttons({ run, working }) {
     ${asking && html`<${DeleteDialog} runs=${[run]} close=${() => ask(false)} />`}
   `;
 }
+
+/** What moves now is the rig, and no recording stands in its place. */
+const again = async (run) => (await runAgain(run)) && closeReplay();
 
 const NOT_AGAIN = {
   disarmed: "arm the rig first.",

@@ -1,45 +1,6 @@
-/** What people write about a run: label, tags and notes, saved when typing pauses, with the way back. */
-import { Problem } from "../live/rest.js";
-import { html, useEffect, useId, useRef, useState } from "../view.js";
-import { edit } from "./inspected.js";
-
-const TYPING_PAUSE_MS = 700;
-
-/** What is typed until the server has it, how that stands, and Undo to what was there before the typing. */
-function useSaved(id, name, value) {
-  const [draft, setDraft] = useState(null);
-  const [standing, stand] = useState({ word: "" });
-  const timer = useRef(0);
-  const newest = useRef(null);
-  const before = useRef(null);
-
-  const save = async (next, undoTo) => {
-    clearTimeout(timer.current);
-    newest.current = null;
-    stand({ word: "saving" });
-    try {
-      await edit(id, { [name]: next });
-      if (newest.current === null) setDraft(null);
-      stand({ word: undoTo === undefined ? "undone" : "saved", undoTo });
-    } catch (problem) {
-      if (!(problem instanceof Problem)) throw problem;
-      stand({ word: "refused", error: problem.message });
-    }
-  };
-  const flush = () => newest.current && save(newest.current.value, before.current);
-  const type = (next) => {
-    if (draft === null) before.current = value;
-    setDraft(next);
-    newest.current = { value: next };
-    clearTimeout(timer.current);
-    timer.current = setTimeout(flush, TYPING_PAUSE_MS);
-  };
-  // What was typed just before the details are closed is saved, too.
-  const latest = useRef(flush);
-  latest.current = flush;
-  useEffect(() => () => void latest.current(), []);
-  return { value: draft ?? value, type, flush, standing, undo: () => save(standing.undoTo, undefined), take: (next) => save(next, value) };
-}
+/** What people write about a run: label, tags and notes. */
+import { html, useId, useState } from "../view.js";
+import { useSaved } from "./saving.js";
 
 export function Editing({ run }) {
   return html`
@@ -68,13 +29,13 @@ function Text({ id, name, title, value, limit, long = false }) {
 
 /** The title with the saving state at its right, so that nothing moves when the state changes. */
 function Head({ own, title, saved }) {
-  const { word, error, undoTo } = saved.standing;
+  const { word, error } = saved.standing;
   const words = { saving: "Saving…", saved: "Saved", undone: "As before" }[word];
   return html`
     <div class="field-head">
       <label for=${own}>${title}</label>
       <span class="saving" id=${`${own}-standing`} aria-live="polite">${words}</span>
-      ${word === "saved" && undoTo !== undefined && html`<button class="quiet" type="button" onClick=${saved.undo}>Undo</button>`}
+      ${saved.undo && html`<button class="quiet" type="button" onClick=${saved.undo}>Undo</button>`}
     </div>
     ${word === "refused" && html`<p class="field-error" role="alert">${error}</p>`}
   `;
@@ -87,7 +48,7 @@ function Tags({ id, tags }) {
   const add = () => {
     const words = typed.split(",").map((word) => word.trim()).filter(Boolean);
     setTyped("");
-    if (words.length > 0) saved.take([...new Set([...tags, ...words])]);
+    if (words.length > 0) saved.take((before) => [...new Set([...before, ...words])]);
   };
   const press = (event) => {
     if (event.key !== "Enter" && event.key !== ",") return;
@@ -98,8 +59,8 @@ function Tags({ id, tags }) {
     <div class="field">
       <${Head} own=${own} title="Tags" saved=${saved} />
       <div class="tag-box">
-        ${tags.map((tag) => html`
-          <span class="tag" key=${tag}>${tag}<button type="button" aria-label=${`Remove the tag ${tag}`} onClick=${() => saved.take(tags.filter((other) => other !== tag))}>×</button></span>
+        ${saved.value.map((tag) => html`
+          <span class="tag" key=${tag}>${tag}<button type="button" aria-label=${`Remove the tag ${tag}`} onClick=${() => saved.take((before) => before.filter((other) => other !== tag))}>×</button></span>
         `)}
         <input id=${own} type="text" autocomplete="off" placeholder="Add a tag" maxlength="40" list="known-tags" value=${typed}
           onInput=${(event) => setTyped(event.target.value)} onKeyDown=${press} onBlur=${add} aria-describedby=${`${own}-standing`} />

@@ -11,7 +11,7 @@ const LITTLE_SPACE = 5e9;
 
 /** One place for both, so that the list stays where it is. */
 export function Foot() {
-  const any = useListing((listing) => listing.ticked.length > 0);
+  const any = useListing((listing) => tickedRuns(listing).length > 0);
   return any ? html`<${Ticked} />` : html`<${Totals} />`;
 }
 

@@ -73,9 +73,9 @@ async function doing(words, call) {
   }
 }
 
-/** Changes label, tags, notes or the pin; raises Problem. */
-export async function edit(id, part) {
-  const run = await patch(`/runs/${encodeURIComponent(id)}`, part);
+/** Changes label, tags, notes or the pin; more: of the request. Raises Problem. */
+export async function edit(id, part, more = {}) {
+  const run = await patch(`/runs/${encodeURIComponent(id)}`, part, more);
   takeIn({ id, ...part, ...run });
   if (now()?.id === id) change({ run: { ...now().run, ...part, ...run } });
 }
@@ -85,9 +85,11 @@ export const pin = ({ id, pinned }) => doing(pinned ? "Unpinning" : "Pinning", (
 /** From the list, where there is no place for what went wrong. */
 export const pinInList = ({ id, pinned }) => edit(id, { pinned: !pinned }).catch((problem) => say(problem.message));
 
+/** @returns whether it has begun */
 export async function runAgain({ id }) {
   const answer = await doing("Starting", () => post(`/runs/${encodeURIComponent(id)}/again`));
   if (answer !== null && now()?.id === id) change({ restarted: answer });
+  return answer !== null;
 }
 
 /** Deletes one after the other. @returns what was refused, in words: ["eight: …"] */

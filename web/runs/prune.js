@@ -1,7 +1,7 @@
 /** Makes room: runs that are old, or the oldest until the rest is small enough; first it shows what would go. */
+import { Ask } from "../ask.js";
 import { post, Problem } from "../live/rest.js";
 import { html, useEffect, useRef, useState } from "../view.js";
-import { Ask } from "./ask.js";
 import { Names } from "./delete.js";
 import { dropRuns } from "./listing.js";
 import { bytes, counted } from "./words.js";

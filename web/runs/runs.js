@@ -1,10 +1,11 @@
 /** The tab of runs: find them, look at them, replay, compare, take away, tidy up. */
 import { useStore } from "../store.js";
 import { html, useEffect, useRef } from "../view.js";
-import { Details, SHEET } from "./details.js";
+import { Details } from "./details.js";
 import { Filters } from "./filters.js";
 import { Foot } from "./foot.js";
 import { isFiltered, more, search, useListing } from "./listing.js";
+import { SHEET } from "./sheet.js";
 import { Table } from "./table.js";
 
 export function Runs() {
@@ -32,15 +33,15 @@ function List({ opened }) {
 
 /** Comes by itself when its place is reached; on a phone only by a touch, since the foot of the list comes after it. */
 function More() {
-  const next = useListing((listing) => listing.next);
-  const loading = useListing((listing) => listing.loading);
+  const { next, loading, error } = useListing((listing) => listing);
   const place = useRef(null);
   useEffect(() => {
-    if (next === null || SHEET.matches) return undefined;
+    // What cannot be had now is not asked for again and again.
+    if (next === null || loading || error || SHEET.matches) return undefined;
     const inView = new IntersectionObserver((entries) => entries.some((entry) => entry.isIntersecting) && more());
     inView.observe(place.current);
     return () => inView.disconnect();
-  }, [next]);
+  }, [next, loading, error]);
   if (next === null) return null;
   return html`<p class="show-more" ref=${place}><button type="button" disabled=${loading} onClick=${more}>Show more</button></p>`;
 }

@@ -19,7 +19,9 @@ function useTurn(place) {
   useEffect(() => {
     if (!ready) return undefined;
     const inView = new IntersectionObserver((entries) => entries.some((entry) => entry.isIntersecting) && setTurn(true));
-    const timer = setTimeout(() => inView.observe(place.current), HEAD_START_MS);
+    // By its own name: the reference is emptied a moment before the timer is stopped.
+    const frame = place.current;
+    const timer = setTimeout(() => inView.observe(frame), HEAD_START_MS);
     return () => {
       clearTimeout(timer);
       inView.disconnect();

@@ -2,7 +2,7 @@
  * A question that covers the page but never the bar: STOP stays in reach of mouse, finger and keys.
  * Escape is STOP, and puts the question away as well.
  */
-import { html, useEffect, useRef } from "../view.js";
+import { html, useEffect, useRef } from "./view.js";
 
 export function Ask({ title, close, children }) {
   const dialog = useRef(null);
