@@ -88,9 +88,7 @@ class Walk:
         self.walker.change(self._case(selection.build_controller()), selection.gait)
         self.request = replace(self.request, selection=selection)
 
-    def step(
-        self, now: float, elapsed: float, pose: Pose, field: Field, perception: Perception
-    ) -> Stride:
+    def step(self, now: float, elapsed: float, pose: Pose, field: Field, perception: Perception) -> Stride:
         """One tick of `elapsed` seconds."""
         if not field.is_ready:
             return Stride(self.walker.sweep.pivot, 0.0, field.heading)

@@ -12,6 +12,7 @@ from starlette.responses import RedirectResponse, Response
 from server.replay.sessions import ReplaySessions
 from server.scene_feed import SceneFeed
 from server.scene_page import scene_page
+from server.streams import StreamEnded
 
 log = logging.getLogger(__name__)
 
@@ -51,6 +52,9 @@ async def replay_socket(socket: WebSocket, session: str) -> None:
         return
     try:
         feed = await replay.scene()
+    except StreamEnded:
+        await socket.close(NOT_RUNNING, "this replay is over")
+        return
     except Exception:  # a replay without a 3D picture is still a replay
         log.exception("the 3D scene of a replay could not be started")
         await socket.close(NOT_RUNNING, "the 3D scene of this replay cannot be shown")

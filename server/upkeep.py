@@ -69,7 +69,8 @@ class Upkeep:
     async def _run(self) -> None:
         with contextlib.suppress(StreamEnded):
             async with self._rig.announcements.subscribe() as messages:
-                await self._do(self._mend)
+                if await self._do(self._mend):
+                    self._tell_pages("listed")
                 await self._put_in_order()
                 if self._has_policy:
                     await self._delete_old()

@@ -20,14 +20,21 @@ def blocks(language: str) -> list[str]:
     return re.findall(rf"^```{language}\n(.*?)^```", README, re.MULTILINE | re.DOTALL)
 
 
-def runs() -> list[str]:
+def commands(beginning: str) -> list[str]:
     lines = "\n".join(blocks("sh")).splitlines()
-    return [line.split("#")[0].strip() for line in lines if line.startswith("pivotrig run")]
+    return [line.split("#")[0].strip() for line in lines if line.startswith(beginning)]
 
 
-@pytest.mark.parametrize("line", runs())
+@pytest.mark.parametrize("line", commands("pivotrig run "))
 def test_each_run_of_the_readme_works(line: str) -> None:
     command = [sys.executable, "-m", "server", *shlex.split(line)[1:], "--duration", "3"]
+    answer = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
+    assert answer.returncode == 0, answer.stderr
+
+
+@pytest.mark.parametrize("line", commands("pivotrig runs "))
+def test_each_look_at_the_runs_of_the_readme_works(line: str, tmp_path: Path) -> None:
+    command = [sys.executable, "-m", "server", *shlex.split(line)[1:], "--data", str(tmp_path)]
     answer = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
     assert answer.returncode == 0, answer.stderr
 

@@ -16,8 +16,9 @@ from av.video.stream import VideoStream
 from cv2.typing import MatLike
 from numpy.typing import NDArray
 
-TICKS_PER_SECOND = 90_000
-"""Of a film's clock: the usual one of video, far finer than a camera's jitter."""
+TICKS_PER_SECOND = 10_000
+"""Of a film's clock: far finer than a camera's jitter, and from one picture to the next there may be 2^31 of them (two
+days) in an MP4. With video's usual 90 000 the camera of a held run could not be away for seven hours."""
 NOMINAL_RATE = 30
 """What the film states as its rate, frames/s; the true times are those of its pictures."""
 KEY_PICTURE_EVERY = 50

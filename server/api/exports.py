@@ -66,7 +66,10 @@ def _found(archive: Archive, run_id: str, is_over: bool) -> Finished:
     if run.recording_state == "writing" and not (
         is_over and archive.recorder.written(run.id, FINISHED_WITHIN)
     ):
-        detail = f"The run {run.id} is being recorded; stop it first, then ask again."
+        detail = (
+            f"The run {run.id} is being recorded; stop it first, then ask again. If its program has died, "
+            "`pivotrig runs recover` keeps what there is."
+        )
         raise Rejected(Problem(409, "Still recorded", detail))
     return Finished(run, path_of(archive, run.id))
 

@@ -39,7 +39,7 @@ PICTURE_SHARE = 8
 """A JPEG takes no more than this part of its picture: an eighth is quality 95 of a noisy one."""
 START_ROOM = 20 * MEGA
 """Bytes beyond what has to stay free that a run needs to begin: half a minute of pictures."""
-CLOSE_WITHIN = 3.0
+CLOSE_WITHIN = 2.5
 """Everything is finished after this long, s; with the coils and the sockets the program is gone within 5 s (faults.md,
 row 16). What a disk has not taken by then is mended at the next start."""
 REMEMBERED = 100
@@ -179,7 +179,7 @@ class Recorder:
         return finished is None or finished.wait(timeout)
 
     def close(self) -> None:
-        """Finish what is recorded, within 3 s; safe to call twice. A disk that hangs is left to itself."""
+        """Finish what is recorded, within 2.5 s; safe to call twice. A disk that hangs is left to itself."""
         with self._lock:
             self._finish()
             give_up = self._give_up_at = self._give_up_at or time.monotonic() + CLOSE_WITHIN

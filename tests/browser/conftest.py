@@ -57,8 +57,8 @@ def browser() -> Iterator[Browser]:
         started.close()
 
 
-@pytest.fixture
-def open_tab(browser: Browser) -> Iterator[OpenTab]:
+@contextlib.contextmanager
+def tabs(browser: Browser) -> Iterator[OpenTab]:
     """Opens a page of a server in a window of a size; everything is closed afterwards.
 
     scene: where it is not looked at it may stay empty, since drawing it in software costs more than all the rest.
@@ -77,6 +77,19 @@ def open_tab(browser: Browser) -> Iterator[OpenTab]:
             page.goto(url)
             return visit
 
+        yield open_tab
+
+
+@pytest.fixture
+def open_tab(browser: Browser) -> Iterator[OpenTab]:
+    with tabs(browser) as open_tab:
+        yield open_tab
+
+
+@pytest.fixture(scope="module")
+def open_lasting_tab(browser: Browser) -> Iterator[OpenTab]:
+    """For tests of one module that share a page: to load it takes longer than most of them."""
+    with tabs(browser) as open_tab:
         yield open_tab
 
 

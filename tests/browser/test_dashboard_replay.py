@@ -8,9 +8,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import pytest
-from dashboard_visit import PATIENCE, OpenTab, ServedRig, Visit, eventually
+from dashboard_visit import OpenTab, ServedRig, Visit, eventually
 from picture import colours, pixels, share_like
-from playwright.sync_api import Browser, FloatRect, Locator, Page, expect
+from playwright.sync_api import FloatRect, Locator, Page, expect
 
 from control.gait import Gait
 from control.runs import Choice, RunRequest, Selection
@@ -29,6 +29,8 @@ CURVE_BLUE = (178, 114, 0)
 ROBOT_RED = (45, 45, 190)
 WALKS = (("narrow sweeps", 30.0, 4.0), ("wide sweeps", 45.0, 3.0))
 """Label, sweep in degrees, duration in s."""
+LOOKED_WITHIN = 40e3
+"""The pictures of a run of 4 s, by a computer that draws a scene meanwhile, ms."""
 A_DIGIT = 0.1
 """Of a place in the page's readings, mm."""
 
@@ -68,15 +70,9 @@ def library(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Library]:
 
 
 @pytest.fixture(scope="module")
-def theatre(library: Library, browser: Browser) -> Iterator[Visit]:
-    """One tab for all tests that only look: a page with a scene takes a software browser seconds to load."""
-    context = browser.new_context(viewport={"width": 1440, "height": 900})
-    visit = Visit(context.new_page())
-    visit.page.set_default_timeout(PATIENCE * 1e3)
-    visit.watch(context)
-    visit.page.goto(library.address(library.ids[0]))
-    yield visit
-    context.close()
+def theatre(library: Library, open_lasting_tab: OpenTab) -> Visit:
+    """One tab for all tests that look at the player; the scene has a test, and a tab, of its own."""
+    return open_lasting_tab(library.address(library.ids[0]), scene=False)
 
 
 def button(page: Page, name: str) -> Locator:
@@ -132,9 +128,10 @@ def at_its_start(page: Page) -> Page:
 
 
 def test_a_recording_fills_the_page_of_the_rig_and_one_click_gives_the_page_back(
-    library: Library, theatre: Visit
+    library: Library, open_tab: OpenTab
 ) -> None:
-    page = theatre.page
+    visit = open_tab(library.address(library.ids[0]))
+    page = visit.page
     expect(bar(page)).to_contain_text("narrow sweeps")
     expect(bar(page)).to_contain_text("geometric · circle")
     expect(page.get_by_text("Replay", exact=True)).to_have_count(5)
@@ -156,8 +153,8 @@ def test_a_recording_fills_the_page_of_the_rig_and_one_click_gives_the_page_back
     assert "replay" not in page.url
     page.go_back()
     expect(bar(page)).to_contain_text("narrow sweeps")
-    assert theatre.foreign(library.rig.url) == []
-    assert theatre.complaints == []
+    assert visit.foreign(library.rig.url) == []
+    assert visit.complaints == []
 
 
 def test_what_the_page_says_of_a_time_is_what_was_recorded_at_that_time(
@@ -214,6 +211,26 @@ def test_space_stops_the_rig_and_not_the_replay(library: Library, theatre: Visit
     library.rig.rest()
 
 
+def test_the_pictures_are_looked_at_again_and_what_comes_of_it_is_drawn_beside_the_run(
+    theatre: Visit,
+) -> None:
+    page = at_its_start(theatre.page)
+    button(page, "Look again…").click()
+    question = page.get_by_role("dialog", name="Look at the pictures again")
+    question.get_by_text("Colour of the robot").click()
+    for name, hue in (("Hue from", "200"), ("Hue to", "240")):
+        question.get_by_label(name).fill(hue)
+    question.get_by_role("button", name="Look again", exact=True).click()
+    seen = question.get_by_role("row", name="Seen in pictures")
+    expect(seen).to_have_text(re.compile(r"100\.0.*0\.0.*−100\.0"), timeout=LOOKED_WITHIN)
+    question.get_by_role("button", name="Close").click()
+    expect(page.get_by_text("narrow sweeps, seen again")).to_be_visible()
+    button(page, "Look again…").click()
+    question.get_by_role("button", name="Forget it").click()
+    question.get_by_role("button", name="Close").click()
+    expect(page.get_by_text("narrow sweeps, seen again")).to_have_count(0)
+
+
 def test_a_drag_in_a_chart_looks_closer_in_all_of_them(theatre: Visit) -> None:
     page = at_its_start(theatre.page)
     box = box_of(chart(page, "Pose").locator(".u-over"))
@@ -239,6 +256,7 @@ def test_two_runs_stand_side_by_side_on_one_time_axis(library: Library, theatre:
         expect(cells).to_have_text(values)
     slider(page).press("End")
     expect(page.get_by_text(re.compile(r"this run was over at 3\.\d s"))).to_be_visible()
+    assert theatre.complaints == []
 
 
 def test_a_recording_that_is_not_there_is_said_and_the_rig_is_shown(theatre: Visit) -> None:
@@ -250,7 +268,7 @@ def test_a_recording_that_is_not_there_is_said_and_the_rig_is_shown(theatre: Vis
 
 
 def test_a_phone_has_stop_above_the_picture_and_the_player_below(library: Library, open_tab: OpenTab) -> None:
-    page = at_its_start(open_tab(library.address(*library.ids), *PHONE).page)
+    page = at_its_start(open_tab(library.address(*library.ids), *PHONE, scene=False).page)
     for shown in (
         *(button(page, name) for name in ("STOP", "Play", "Back to live")),
         slider(page),
@@ -301,5 +319,5 @@ def test_a_replay_goes_on_where_it_was_when_the_server_comes_back_and_ends_when_
     expect(other.get_by_role("alert")).to_contain_text(gone)
     expect(bar(other)).to_have_count(0)
     mortal.send("DELETE", f"/runs/{library.ids[0]}")
-    expect(page.get_by_role("alert").filter(has_text=gone)).to_contain_text("was deleted")
+    expect(page.get_by_role("alert").filter(has_text="was deleted")).to_contain_text(gone)
     expect(bar(page)).to_have_count(0)

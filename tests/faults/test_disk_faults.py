@@ -118,6 +118,10 @@ def test_a_recorder_with_a_mistake_ends_the_run_and_nothing_else() -> None:
         assert (reaction.after, reaction.code) == (RigState.DISARMED, "recording"), reaction
         assert "ZeroDivisionError" in reaction.reason
         check_stopped(bench, reaction.fault * 1e-3 + FRAME * 1e-3)
+        (id,) = bench.runs
+        assert recorder.written(id, 10.0)
+        record = archive.catalogue.get(id)
+        assert (record.state, record.recording_state) == ("aborted", "complete")
         bench.machine.close()
         recorder.close()
         archive.close()

@@ -176,7 +176,7 @@ async def test_a_server_that_ends_takes_its_exports_with_it_and_says_so(at, serv
             assert "going down" in answer.json()["detail"]
 
 
-async def test_an_export_is_made_wherever_the_server_was_started(at, api, tmp_path, monkeypatch):
+async def test_an_export_is_made_wherever_the_server_was_started(api, tmp_path, monkeypatch):
     """Also in a folder with a program of its own that is called as ours is."""
     (tmp_path / "server").mkdir()
     (tmp_path / "server" / "__init__.py").write_text("raise SystemExit('another server')")

@@ -76,7 +76,7 @@ def test_the_scene_shows_the_one_that_is_walked(recording):
 def test_the_film_shows_the_one_that_is_walked(path):
     model = build_machine(RigFile(), realtime=False).camera_model
     places = [metres(selection)[index] for selection, index in ((BEGUN, rightmost(BEGUN)), (CHOSEN, 150))]
-    spots = [tuple(round(value) for value in model.to_pixel(*place, 0.0)) for place in places]
+    spots = [tuple(round(value) for value in model.to_pixel(place[0], place[1], 0.0)) for place in places]
     with Overlay.of(path) as overlay:
         for at, shown in ((CHANGED - 0.1, [True, False]), (CHANGED + 0.1, [False, True])):
             drawn = overlay.drawn(np.zeros((480, 640, 3), np.uint8), at)

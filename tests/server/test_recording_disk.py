@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import contextlib
+import errno
 import fcntl
+import os
 import resource
+import stat
 import time
 
 import pytest
@@ -15,7 +18,7 @@ from control.safety import Refused
 from control.simulation.disk_faults import DiskFaults
 from server.archive import Archive
 from server.faulty_disk import FaultyDisk
-from server.recording.disk import LocalDisk
+from server.recording.disk import LocalDisk, LocalFile
 from server.recording.reading import Recording
 from server.recording.recorder import LONGEST_WAIT
 from server.recording_section import RecordingSection
@@ -264,3 +267,67 @@ def test_a_file_that_may_not_grow_any_further_keeps_all_that_fitted(bench, archi
     with Recording.open(path) as recording:
         assert len(list(recording.ticks())) > 30
         assert recording.settings["run"]["id"] == id
+
+
+class Unsure(LocalDisk):
+    """A disk of another computer: what it did not take whole cannot even be cut off, until it is back."""
+
+    def __init__(self):
+        self.is_away = False
+
+    def create(self, path):
+        return UnsureFile(path, self)
+
+
+class UnsureFile(LocalFile):
+    def __init__(self, path, disk):
+        super().__init__(path)
+        self._disk = disk
+
+    def write(self, data):
+        if self._disk.is_away:
+            super().write(data[: len(data) // 2])
+            raise OSError(errno.EIO, os.strerror(errno.EIO))
+        return super().write(data)
+
+    def fileno(self):
+        if self._disk.is_away:
+            raise OSError(errno.EIO, os.strerror(errno.EIO))
+        return super().fileno()
+
+
+def test_half_a_chunk_is_cut_off_before_anything_else_is_written(bench, archive):
+    disk = archive.recorder.disk = Unsure()
+    watch = AtPace(archive.recorder, at=120, do=lambda: setattr(disk, "is_away", True))
+
+    def watched(snapshot):
+        watch(snapshot)
+        if archive.recorder.failure:
+            disk.is_away = False
+
+    id = bench.record_in(archive, Walk(duration=4.0), watched)
+    assert watch.failed_at is not None
+    examine(archive.path_of(id))
+    assert "Input/output error" in outcome_of(archive.path_of(id))["failure"]
+
+
+@pytest.mark.parametrize(("number", "is_kept"), [(errno.EINVAL, True), (errno.EIO, False)])
+def test_a_folder_that_cannot_be_synced_leaves_no_open_file_behind(
+    bench, archive, monkeypatch, number, is_kept
+):
+    """Some network disks refuse to be asked; others are broken."""
+    real = os.fsync
+
+    def fsync(file):
+        if stat.S_ISDIR(os.fstat(file).st_mode):
+            raise OSError(number, os.strerror(number))
+        real(file)
+
+    monkeypatch.setattr(os, "fsync", fsync)
+    watch = AtPace(archive.recorder)
+    id = bench.record_in(archive, Walk(duration=0.5), watch)
+    path = archive.path_of(id)
+    assert (watch.failed_at is None) is is_kept
+    assert path.exists() is is_kept
+    names = [os.path.realpath(f"/proc/self/fd/{each}") for each in os.listdir("/proc/self/fd")]
+    assert str(path) not in [name.removesuffix(" (deleted)") for name in names]

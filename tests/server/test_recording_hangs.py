@@ -96,7 +96,8 @@ def test_only_a_simulated_rig_of_the_command_line_waits_for_a_disk(
 def test_a_disk_that_does_not_answer_refuses_each_start_and_keeps_no_thread_for_each(tmp_path, monkeypatch):
     monkeypatch.setattr(disk_answer, "WITHIN", WITHIN)
     archive = Archive.open(tmp_path)
-    machine = replace(build_machine(RigFile(), realtime=False), disk=Silent())
+    disk = Silent()
+    machine = replace(build_machine(RigFile(), realtime=False), disk=disk)
     recording = RunRecording(archive.recorder)
     before = threading.active_count()
     for _ in range(2):
@@ -105,7 +106,7 @@ def test_a_disk_that_does_not_answer_refuses_each_start_and_keeps_no_thread_for_
             recording.check(machine)
         assert WITHIN <= time.monotonic() - began < WITHIN + 1.0
     assert threading.active_count() == before + 1
-    machine.disk.may_answer.set()
+    disk.may_answer.set()
     recording.check(machine)
     machine.close()
     archive.close()

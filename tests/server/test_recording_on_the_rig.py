@@ -100,6 +100,16 @@ async def test_a_run_that_cannot_be_recorded_is_refused_in_words_and_the_rig_sta
     assert (await disarmed.get("/state")).json()["rig"] == "armed"
 
 
+async def test_a_recording_holds_no_tick_of_the_rig_that_the_changed_settings_make(at, disarmed):
+    """The robot's coils are still being seen to go when another machine, with a clock of its own, is put in place."""
+    id = await walk(disarmed, 0.3)
+    await act(disarmed, "/runs/current/stop")
+    await act(disarmed, "/disarm")
+    await at.rig.rebuild(at.rig.settings)
+    times = [state["time_s"] for state in messages_of(await written(at, id), "/state")]
+    assert times == sorted(times)
+
+
 @pytest.mark.parametrize("fault", ["disk_full", "disk_read_only"])
 async def test_a_disk_that_fails_under_way_ends_the_run_and_everybody_is_told_why(at, disarmed, fault):
     id = await walk(disarmed, 1.5)
@@ -154,6 +164,7 @@ def test_a_server_that_is_ended_ends_its_run_in_good_order(tmp_path):
         archive.close()
 
 
+@pytest.mark.exclusive
 def test_a_server_whose_disk_hangs_is_gone_as_soon_and_its_recording_opens(tmp_path):
     with served(tmp_path, "--sim") as server:
         server.start_walking()

@@ -36,6 +36,12 @@ async def told(rig, words):
             await asyncio.sleep(0.02)
 
 
+async def pages_hear(messages, event):
+    async with asyncio.timeout(TIMEOUT):
+        while (await messages.get()).get("event") != event:
+            pass
+
+
 async def gone(archive, id):
     async with asyncio.timeout(TIMEOUT):
         while archive.path_of(id).exists():
@@ -51,8 +57,9 @@ async def test_after_the_start_what_is_torn_is_mended_and_what_is_too_much_delet
     os.truncate(archive.path_of("torn"), archive.path_of("torn").stat().st_size * 2 // 3)
     archive.catalogue.update("torn", pinned=True, state="running", recording_state="writing")
     rig = Rig(build_machine(KEEPS_NOTHING, realtime=True), recorder=archive.recorder)
-    async with serve(create_app(rig, archive)):
+    async with serve(create_app(rig, archive)), rig.announcements.subscribe() as messages:
         await told(rig, "torn")
+        await pages_hear(messages, "listed")
         await gone(archive, "loose")
         await told(rig, "one old run was deleted")
         mended = archive.catalogue.get("torn")

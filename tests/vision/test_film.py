@@ -67,6 +67,11 @@ def test_a_film_shows_each_picture_when_it_was_taken(made):
     assert shown == pytest.approx(UNEVEN, abs=1e-4)
 
 
+def test_a_camera_may_be_away_for_a_day(made):
+    times = [0.0, 0.1, 86_400.0, 86_400.1]
+    assert [time for time, _ in played(made(times))] == pytest.approx(times, abs=1e-4)
+
+
 def test_a_film_shows_all_pictures_in_their_order(made):
     greys = [grey for _, grey in played(made(UNEVEN))]
     assert len(greys) == len(UNEVEN)

@@ -47,13 +47,13 @@ function RetrackDialog({ run, close }) {
   return html`
     <${Ask} title="Look at the pictures again" close=${close}>
       <p class="hint">The recorded pictures are searched once more. The recording stays as it is.</p>
-      <${Wishes} run=${run} wish=${wish} setWish=${setWish} />
       <div class="second-look" aria-live="polite">
         ${error && html`<p class="field-error">${error}</p>`}
         ${working && html`<progress aria-label="Looked at so far" value=${second.progress} max="1"></progress>`}
         ${second?.stage === "failed" && html`<p class="field-error">${second.reason}</p>`}
         ${second?.stage === "done" && html`<${Comparison} comparison=${second.comparison} />`}
       </div>
+      <${Wishes} run=${run} wish=${wish} setWish=${setWish} />
       <div class="choice">
         ${working
           ? html`<button type="button" onClick=${() => giveUp(run.id)}>Cancel</button>`
@@ -65,26 +65,27 @@ function RetrackDialog({ run, close }) {
   `;
 }
 
+const CONTROLLER = { name: "controller", title: "Controller asked", description: "", unit: "", kind: "choice" };
+const NOBODY = "nobody";
 const WHOSE = { name: "rig", title: "Settings", description: "What is not changed below.", unit: "", kind: "choice", choices: ["as they were", "as the rig has them now"] };
 
 function Wishes({ run, wish, setWish }) {
   const rigNow = useStore((state) => state.rig);
   const controllers = useStore((state) => state.controllers);
   const base = (wish.rig === "now" ? rigNow : run.run.settings?.rig) ?? {};
+  const entry = controllers.find(({ name }) => name === wish.controller?.name);
   const change = (part) => (name, value) => setWish({ ...wish, [part]: withValue(base[part], wish[part], name, value) });
-  const choose = (event) => {
-    const entry = controllers[event.target.selectedIndex - 1];
+  const choose = (chosen) => {
+    const entry = controllers.find(({ title }) => title === chosen);
     setWish({ ...wish, controller: entry ? { name: entry.name, parameters: defaultsOf(entry.parameters) } : null });
   };
-  const entry = controllers.find(({ name }) => name === wish.controller?.name);
   const changeParameter = (name, value) => setWish({ ...wish, controller: { ...wish.controller, parameters: { ...wish.controller.parameters, [name]: value } } });
   return html`
     <div class="fields">
       <${Field} id="retrack.rig" form=${WHOSE} value=${WHOSE.choices[Number(wish.rig === "now")]}
         onChange=${(value) => setWish({ ...wish, rig: value === WHOSE.choices[1] ? "now" : "then" })} />
-      <label class="field"><span>Controller asked</span>
-        <select onChange=${choose}><option>none</option>${controllers.map(({ name, title }) => html`<option selected=${name === wish.controller?.name}>${title}</option>`)}</select>
-      </label>
+      <${Field} id="retrack.controller" form=${{ ...CONTROLLER, choices: [NOBODY, ...controllers.map(({ title }) => title)] }}
+        value=${entry?.title ?? NOBODY} onChange=${choose} />
     </div>
     ${entry && html`<p class="hint">It is asked at each moment what it would do, and not obeyed.</p>
       <${SchemaForm} section="retrack.controller" schema=${entry.parameters} values=${wish.controller.parameters} onChange=${changeParameter} />`}

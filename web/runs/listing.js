@@ -80,14 +80,14 @@ export function filterBy(part) {
   typing = setTimeout(search, "text" in part || "tag" in part ? TYPING_PAUSE_MS : 0);
 }
 
-/** What was loaded beyond the newest page may have gone. */
-let pruned = false;
+/** Many runs have come or gone: what was loaded beyond the newest page is not to be trusted. */
+let isStale = false;
 
 /** The newest page once more, with what was loaded beyond it kept. */
 const refresh = () =>
   ask(null, (answer) => {
-    const tail = answer.next === null || pruned ? [] : beyond(now().runs ?? [], answer.runs.at(-1));
-    pruned = false;
+    const tail = answer.next === null || isStale ? [] : beyond(now().runs ?? [], answer.runs.at(-1));
+    isStale = false;
     return { runs: [...answer.runs, ...tail], next: tail.length > 0 ? now().next : answer.next, ...counts(answer) };
   });
 
@@ -119,7 +119,7 @@ function lookAgainIfUnfinished() {
 export function hearOfRun({ event, run }) {
   const { runs, filter } = now();
   looks = 0;
-  pruned ||= event === "pruned";
+  isStale ||= !run?.id;
   if (run?.id && runs !== null) change({ runs: withNews(runs, event, run, isFiltered(filter)) });
   refreshSoon();
 }
