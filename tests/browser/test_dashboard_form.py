@@ -33,11 +33,12 @@ def test_an_edited_value_reaches_the_rig_and_the_defaults_bring_it_back(
 
 def test_another_trajectory_brings_its_own_form_and_picture(dashboard: Visit, served: ServedRig) -> None:
     page = dashboard.page
-    page.get_by_role("combobox", name="Trajectory").select_option("circle")
+    panel = page.get_by_role("region", name="Run", exact=True)
+    panel.get_by_role("combobox", name="Trajectory").select_option("circle")
     expect(page.get_by_role("textbox", name="Radius")).to_be_visible()
     expect(page.get_by_role("img", name="The path in the workspace")).to_be_visible()
     eventually(lambda: served.ask("/selection")["trajectory"]["name"] == "circle", "the rig has the circle")
     page.get_by_role("textbox", name="Radius").fill("90")
-    expect(page.get_by_role("region", name="Run", exact=True)).to_contain_text("workspace")
-    page.get_by_role("combobox", name="Trajectory").select_option("eight")
+    expect(panel).to_contain_text("workspace")
+    panel.get_by_role("combobox", name="Trajectory").select_option("eight")
     eventually(lambda: served.ask("/selection")["trajectory"]["name"] == "eight", "the eight is back")
