@@ -40,8 +40,8 @@ from server.api import (
     vision,
 )
 from server.api.ticks import TickText
-from server.calibration_runs import CalibrationRuns
-from server.camera_calibration import CameraCalibration
+from server.calibration.camera import CameraCalibration
+from server.calibration.runs import CalibrationRuns
 from server.colour_picker import ColourPicker
 from server.door import Door
 from server.exports.work import Workshop
@@ -49,9 +49,9 @@ from server.fresh_files import ALWAYS_ASK, FreshFiles
 from server.pictures import Pictures
 from server.replay.sessions import ReplaySessions
 from server.retrack.desk import RetrackDesk
-from server.scene_feed import SceneFeed
-from server.scene_live import LiveView
-from server.scene_routes import add_scene_routes
+from server.scene.feed import SceneFeed
+from server.scene.live import LiveView
+from server.scene.routes import add_scene_routes
 from server.upkeep import Upkeep
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from server.catalogue.catalogue import Catalogue
 from server.catalogue.shelf import RECORDINGS, file_of
-from server.recording.recorder import Recorder
+from server.recording.writing.recorder import Recorder
 
 _ID = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,79}")
 

@@ -18,9 +18,9 @@ from control.parts import Camera, Parts
 from control.perception import Perception, Tracker
 from control.simulation.faults.injection import Faults
 from control.simulation.world import World
+from server.calibration.optics import calibration_problem, model_in_use
 from server.data_folder import data_folder
-from server.optics import calibration_problem, model_in_use
-from server.recording.disk import Disk
+from server.recording.writing.disk import Disk
 from server.seams import FaultySeams, Seams
 from server.settings import MM, MS, RigFile
 from server.settings_in_si import (

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from control.simulation.disk_faults import DiskFaults
-from server.recording.disk import Disk, DiskFile
+from server.recording.writing.disk import Disk, DiskFile
 
 
 class FaultyDisk:

@@ -16,7 +16,7 @@ from server.assembly import Machine
 from server.run_recording import RunRecording
 
 if TYPE_CHECKING:
-    from server.recording.recorder import Recorder
+    from server.recording.writing.recorder import Recorder
 
 FRAME_TIMEOUT = 0.034
 """As in `server.rig_life`, s."""

@@ -26,7 +26,7 @@ from server.settings import RigFile
 from server.vision_settings import tracker_settings
 
 if TYPE_CHECKING:
-    from server.recording.recorder import Recorder
+    from server.recording.writing.recorder import Recorder
 
 ESTOP_ANSWER = 0.5
 """An emergency stop is answered after this long at the latest, s; the coils have been stopped at once."""

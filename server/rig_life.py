@@ -35,7 +35,7 @@ from server.trail import Trail
 from server.watchdog import Hang, Watchdog, stopped
 
 if TYPE_CHECKING:
-    from server.recording.recorder import Recorder
+    from server.recording.writing.recorder import Recorder
 
 T = TypeVar("T")
 

@@ -16,11 +16,11 @@ from control.news import Announcement, Ended
 from control.runs import Run, RunState, Selection
 from control.snapshot import NOT_RECORDED, RecordingStatus, Snapshot
 from server.recording.conditions import conditions_of
-from server.recording.disk_answer import DiskAnswer
+from server.recording.writing.disk_answer import DiskAnswer
 
 if TYPE_CHECKING:
     from server.assembly import Machine
-    from server.recording.recorder import Recorder
+    from server.recording.writing.recorder import Recorder
 
 log = logging.getLogger(__name__)
 

@@ -16,7 +16,7 @@ from control.simulation.faults.points import Decisions, FaultPoints, Nominal, Re
 from control.simulation.line_faults import LineFaults
 from control.simulation.world import World
 from server.faulty_disk import FaultyDisk
-from server.recording.disk import Disk, LocalDisk
+from server.recording.writing.disk import Disk, LocalDisk
 from server.settings import RigFile
 from vision.simulated.camera import SyntheticCamera
 

@@ -15,8 +15,8 @@ from control.simulation.lockstep import RemoteBoard
 from control.simulation.plant import build_plant
 from control.simulation.wiring import Wiring
 from control.simulation.world import Board, World
+from server.calibration.optics import assumed_model
 from server.coil_sections import Coil
-from server.optics import assumed_model
 from server.settings import MM, MS, RigFile
 from server.settings_in_si import registration_of
 from vision.simulated.camera import AsFastAsItGoes, Pace, RealTime, SceneSettings, SyntheticCamera

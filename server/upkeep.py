@@ -21,7 +21,7 @@ from server.archive import Archive
 from server.catalogue.rebuilding import put_in_order
 from server.catalogue.records import Loose
 from server.catalogue.retention import Policy, prune
-from server.recording.recovery import recover
+from server.recording.recovery.recover import recover
 from server.streams import Mailbox, StreamEnded
 
 if TYPE_CHECKING:

@@ -18,9 +18,9 @@ from server.api.calibration_answers import looked_json, pending_lens_json, pendi
 from server.api.problems import Problem, Rejected
 from server.api.rig_file import own_file, told
 from server.api.schemas import Edge
-from server.board_sheet import board_pdf
-from server.camera_calibration import CameraCalibration, NoBoard
-from server.optics import board_of
+from server.calibration.board_sheet import board_pdf
+from server.calibration.camera import CameraCalibration, NoBoard
+from server.calibration.optics import board_of
 from server.settings import MM
 from vision.calibration.board import Board
 from vision.calibration.lens import Lens

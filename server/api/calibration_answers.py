@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from server.camera_calibration import CameraCalibration, Look
-from server.optics import board_of, height_and_tilt, misfit, model_in_use, scale
+from server.calibration.camera import CameraCalibration, Look
+from server.calibration.optics import board_of, height_and_tilt, misfit, model_in_use, scale
 from server.settings import MM
 from vision.calibration.lens import LensFit
 from vision.calibration.plane import PlaneFit

@@ -18,10 +18,10 @@ from server.api.body import StrictRoute
 from server.api.rig_file import own_file, told
 from server.api.schemas import MM, Edge
 from server.assembly import Machine
-from server.calibration_runs import Calibration, CalibrationRuns, Kind
-from server.calibration_walk import CalibrationWalk
-from server.gait_calibration import Star, StarWalk
-from server.latency_calibration import LatencyWalk
+from server.calibration.gait import Star, StarWalk
+from server.calibration.latency import LatencyWalk
+from server.calibration.runs import Calibration, CalibrationRuns, Kind
+from server.calibration.walk import CalibrationWalk
 from server.rig import Rig
 from server.rig_file import merged
 from server.settings import RigFile

@@ -15,7 +15,7 @@ from server.api.access import TheArchive
 from server.api.problems import Problem, Rejected
 from server.api.recorded import path_of, record_of
 from server.api.replay import LONGEST
-from server.recording.reading import Recording, Unreadable
+from server.recording.reading.recording import Recording, Unreadable
 from server.replay.overview import overview_of
 from server.replay.series import computed_series
 

@@ -25,10 +25,10 @@ from server.api.access import TheArchive, TheReplays, TheRig
 from server.api.problems import Rejected
 from server.api.recorded import path_of, record_of
 from server.api.sockets import Line, goodbye, serve
-from server.recording.reading import Unreadable
+from server.recording.reading.recording import Unreadable
 from server.replay.session import Film, ReplaySession, Shot
 from server.replay.sessions import TooManyReplays
-from server.scene_geometry import geometry_of
+from server.scene.geometry import geometry_of
 from server.streams import Mailbox, Publisher, StreamEnded
 
 if TYPE_CHECKING:

@@ -13,8 +13,8 @@ from server.api.body import StrictRoute
 from server.api.calibration import TheCalibration
 from server.api.problems import not_found
 from server.api.schemas import Edge
+from server.calibration.optics import assumed_model, board_of
 from server.exchange import require_disarmed
-from server.optics import assumed_model, board_of
 from server.rig import Rig
 from server.streams import StreamEnded
 from vision.simulated.camera import SyntheticCamera

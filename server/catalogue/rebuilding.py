@@ -13,9 +13,9 @@ from server.catalogue.edits import EDITED, edits_beside
 from server.catalogue.errors import NoSuchRun
 from server.catalogue.records import RunRecord
 from server.catalogue.shelf import RECORDING, Shelf, file_of
-from server.recording.listing import listed
-from server.recording.reading import Recording, Unreadable
-from server.recording.recovery import is_being_written, recover
+from server.recording.reading.listing import listed
+from server.recording.reading.recording import Recording, Unreadable
+from server.recording.recovery.recover import is_being_written, recover
 
 Watch = Callable[[int, int], None]
 """Told after each recording: how many have been read, and how many there are."""

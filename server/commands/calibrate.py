@@ -31,7 +31,7 @@ from server.settings import MM, RigFile
 from server.signals import coils_stop_first
 
 if TYPE_CHECKING:
-    from server.gait_calibration import Star
+    from server.calibration.gait import Star
 
 app = typer.Typer(
     add_completion=False, no_args_is_help=True, pretty_exceptions_enable=False, help="Measure a rig."
@@ -79,7 +79,7 @@ def gait(
     rig_file = with_simulation(read_rig_file(rig), {"plant": plant, "seed": seed})
     if rig_file.is_simulated:
         rig_file = with_simulation(rig_file, {"start_x_mm": 0.0, "start_y_mm": 0.0})
-    from server.gait_calibration import Star
+    from server.calibration.gait import Star
 
     choice = _gait(sweep, tilt), Star(legs, leg * MM, math.radians(rate))
     result, changes = _calibrate(rig_file, *choice, consent=ask_for_consent(rig_file, yes=yes))
@@ -98,7 +98,7 @@ def _gait(sweep: float, tilt: float) -> Gait:
 def _calibrate(rig_file: RigFile, gait: Gait, star: Star, *, consent: bool) -> Found:
     """The figures as they are told, and what of them the rig file has a place for."""
     from server.assembly import build_machine
-    from server.gait_calibration import calibrate_gait, changes, figures_json
+    from server.calibration.gait import calibrate_gait, changes, figures_json
     from server.run_list import new_id
 
     with explained():

@@ -36,8 +36,8 @@ def board(
     as_json: JsonOption = False,
 ) -> None:
     """Write the board to print: a PDF at true scale. Print it at 100 %, and glue it to something flat."""
-    from server.board_sheet import board_pdf, paper_for
-    from server.optics import board_of
+    from server.calibration.board_sheet import board_pdf, paper_for
+    from server.calibration.optics import board_of
 
     given = {"columns": columns, "rows": rows, "square_mm": square}
     chosen = {name: value for name, value in given.items() if value is not None}
@@ -65,8 +65,8 @@ def lens(
 ) -> None:
     """Find the lens from views of the printed board: hold it under the camera, and follow the hints."""
     from server.api.calibration_answers import pending_lens_json
+    from server.calibration.optics import lens_section, today
     from server.commands.camera_bench import opened_camera, watching
-    from server.optics import lens_section, today
     from vision.calibration.lens import solve_lens
 
     with (

@@ -37,7 +37,7 @@ def _measured(rig_file: RigFile, turns: int) -> tuple[dict[str, Any], dict[str, 
     """The figures, and what of them the rig file has a place for."""
     from control.controllers.wiggle import WiggleParameters
     from server.assembly import build_machine
-    from server.latency_calibration import calibrate_latency, changes, figures
+    from server.calibration.latency import calibrate_latency, changes, figures
     from server.run_list import new_id
 
     with explained():

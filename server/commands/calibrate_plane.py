@@ -66,8 +66,8 @@ def plane(
 
 def _solved(rig_file: RigFile, solve: Solve) -> tuple[PlaneFit, str]:
     """The plane, and whose it is."""
+    from server.calibration.optics import lens_in_use
     from server.commands.camera_bench import opened_camera, watching
-    from server.optics import lens_in_use
 
     workspace = 0.5 * rig_file.limits.workspace_mm * MM
     with opened_camera(rig_file) as bench, watching("looking at the plate"):
@@ -121,7 +121,7 @@ def _numbers(text: str, option: str, count: int) -> list[float]:
 def _result(rig_file: RigFile, fit: PlaneFit, identity: str) -> tuple[dict[str, Any], dict[str, Any]]:
     """What is shown, and what of it goes into the rig file."""
     from server.api.calibration_answers import plane_json
-    from server.optics import plane_section, today
+    from server.calibration.optics import plane_section, today
 
     saved = rig_file.camera.lens
     lens_date = saved.date if saved is not None and saved.size_px == fit.lens.size else ""

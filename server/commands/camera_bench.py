@@ -9,9 +9,9 @@ from dataclasses import dataclass
 from rich.status import Status
 
 from server.assembly import Machine, build_machine
+from server.calibration.optics import assumed_model, board_of
 from server.commands.bench import explained
 from server.commands.outcome import FAILED, console, fail
-from server.optics import assumed_model, board_of
 from server.settings import RigFile
 from vision.calibration.board import BoardFinder, Sighting
 from vision.calibration.lens import Lens

@@ -36,7 +36,7 @@ def rebuild(data: DataOption = None, as_json: JsonOption = False) -> None:
 
 def recover(data: DataOption = None, as_json: JsonOption = False) -> None:
     """Mend recordings whose program ended before they did: everything that can be read is kept."""
-    from server.recording.recovery import recover as recover_recordings
+    from server.recording.recovery.recover import recover as recover_recordings
 
     with opened_shelf(data) as shelf:
         mended = recover_recordings(shelf.folder, shelf.catalogue)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from server.calibration.optics import misfit
 from server.camera_sections import CameraSection, LensSection, PlaneSection
 from server.diagnosis.check import Check, info, ok, problem, warning
-from server.optics import misfit
 from server.settings import RigFile
 
 LENS, PLANE = "lens", "plane"

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from control.model import Frame
+from server.calibration.optics import model_in_use
 from server.diagnosis.check import Check, ok, warning
-from server.optics import model_in_use
 from server.settings import MM, RigFile
 from server.vision_settings import tracker_settings
 from vision.camera_model import CameraModel

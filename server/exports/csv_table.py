@@ -13,7 +13,7 @@ from typing import BinaryIO
 from server.exports.columns import COLUMNS, Value
 from server.exports.formats import Job, Watch
 from server.exports.table import batches
-from server.recording.reading import Recording
+from server.recording.reading.recording import Recording
 
 
 def write(recording: Recording, sink: BinaryIO, _job: Job, watch: Watch) -> None:

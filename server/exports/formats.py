@@ -10,7 +10,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import BinaryIO
 
-from server.recording.reading import Recording, Unreadable
+from server.recording.reading.recording import Recording, Unreadable
 
 Watch = Callable[[float], None]
 """Told how far an export has come, 0 to 1."""

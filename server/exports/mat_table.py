@@ -17,7 +17,7 @@ from scipy.io import savemat
 from server.exports.columns import COLUMNS, Column, Kind
 from server.exports.formats import ExportError, Job, Watch
 from server.exports.table import batches
-from server.recording.reading import Recording
+from server.recording.reading.recording import Recording
 
 VARIABLE_LIMIT = 1 << 31
 """Bytes that a variable of a MAT file of version 5 may have."""

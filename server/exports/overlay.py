@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 from control.model import PIVOT_A, PIVOT_B, Measurement, Observation, Pose, Tracking
 from server.exports.formats import ExportError
 from server.recording.clock import rig_time_of_start
-from server.recording.paths import path_at, paths_of
-from server.recording.reading import Recording
-from server.recording.tick_reading import Tick
+from server.recording.reading.paths import path_at, paths_of
+from server.recording.reading.recording import Recording
+from server.recording.reading.tick_reading import Tick
 from server.trail import EVERY, POINTS
 from vision.camera_model import CalibrationError, CameraModel, Row
 from vision.overlay import Drawing, draw_overlay

@@ -11,7 +11,7 @@ from pyarrow import parquet
 from server.exports.columns import COLUMNS, Column, Kind
 from server.exports.formats import Job, Watch
 from server.exports.table import Row, batches
-from server.recording.reading import Recording
+from server.recording.reading.recording import Recording
 
 TYPES = {
     Kind.NUMBER: pa.float64(),

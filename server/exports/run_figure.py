@@ -17,7 +17,7 @@ from control.model import PIVOT_A, PIVOT_B
 from server.exports.columns import named
 from server.exports.formats import FormatName, Job, Watch
 from server.exports.table import batches
-from server.recording.reading import Recording
+from server.recording.reading.recording import Recording
 from server.reports.drawing import BLACK, BLUE, GREEN, ORANGE, PURPLE, label, plain, png, svg
 
 SHOWN = ("time_s", "x_mm", "y_mm", "x_reference_mm", "y_reference_mm", "error_mm", "run_s", "pivot")

@@ -9,7 +9,7 @@ from typing import BinaryIO
 
 from server.exports.formats import ExportError, Job, Watch
 from server.exports.overlay import Overlay
-from server.recording.reading import Picture, Recording
+from server.recording.reading.recording import Picture, Recording
 from vision.film import Film, FilmError, decode_jpeg, film_file, film_stream
 from vision.tracking.colour import Image
 

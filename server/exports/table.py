@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from server.exports.columns import Column, Value, named
 from server.exports.formats import Watch
-from server.recording.reading import Recording
+from server.recording.reading.recording import Recording
 
 AT_ONCE = 4096
 """Ticks of one batch: a minute of them."""

@@ -6,7 +6,7 @@ import shutil
 from typing import BinaryIO
 
 from server.exports.formats import Job, Watch
-from server.recording.reading import Recording
+from server.recording.reading.recording import Recording
 
 
 def write(_recording: Recording, sink: BinaryIO, job: Job, watch: Watch) -> None:

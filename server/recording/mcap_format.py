@@ -15,7 +15,7 @@ from typing import Final, NamedTuple
 
 import zstandard
 
-from server.recording.byte_source import Damaged
+from server.recording.reading.byte_source import Damaged
 
 MAGIC = bytes((137, 77, 67, 65, 80, 48, 13, 10))
 HEAD = struct.Struct("<BQ")

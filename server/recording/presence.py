@@ -8,7 +8,7 @@ import os
 from pathlib import Path
 
 from server.catalogue.shelf import WALKING, file_of
-from server.recording.disk import OWN_FILE
+from server.recording.writing.disk import OWN_FILE
 
 
 class Presence:

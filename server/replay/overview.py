@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from server.recording.paths import MM, paths_of
-from server.recording.reading import Recording
+from server.recording.reading.paths import MM, paths_of
+from server.recording.reading.recording import Recording
 from server.replay.series import computed_series
 from server.replay.then import camera_of, reference_points, robot_length_mm, workspace_half_mm
 

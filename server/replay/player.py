@@ -7,10 +7,10 @@ from pathlib import Path
 from typing import Any
 
 from server.recording.clock import rig_time_of_start
-from server.recording.reading import Picture, Recording, Unreadable
-from server.recording.recount import NOTHING, number
+from server.recording.reading.recording import Picture, Recording, Unreadable
+from server.recording.reading.tick_reading import Tick
+from server.recording.recovery.recount import NOTHING, number
 from server.recording.tick_json import as_tick
-from server.recording.tick_reading import Tick
 
 SAME_INSTANT = 1e-6
 """Two times of one capture differ by less, s: one of them has been rounded to nanoseconds of UTC."""

@@ -7,9 +7,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from server.recording.reading import Recording
-from server.recording.recount import NOTHING, point_of_messages
-from server.recording.tick_reading import Tick
+from server.recording.reading.recording import Recording
+from server.recording.reading.tick_reading import Tick
+from server.recording.recovery.recount import NOTHING, point_of_messages
 
 MOST_POINTS = 600
 """Instants that are looked up: about half a second's work, however long the recording is."""

@@ -10,13 +10,13 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, TypeVar
 
-from server.recording.reading import Picture
+from server.recording.reading.recording import Picture
 from server.replay.player import Player
 from server.replay.shown import Instant, ReplaySource
 from server.replay.staging import stage
-from server.scene_feed import SceneFeed
-from server.scene_geometry import SceneGeometry
-from server.scene_robot import LOOKS, Looks
+from server.scene.feed import SceneFeed
+from server.scene.geometry import SceneGeometry
+from server.scene.robot import LOOKS, Looks
 from server.streams import Publisher, StreamEnded
 
 T = TypeVar("T")

@@ -8,7 +8,7 @@ from contextlib import asynccontextmanager
 from pathlib import Path
 
 from server.replay.session import ReplaySession
-from server.scene_geometry import SceneGeometry
+from server.scene.geometry import SceneGeometry
 
 MOST_SESSIONS = 6
 """Replays at once. Each holds a thread and a few MB, and its scene some more."""

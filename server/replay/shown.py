@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 
 from control.model import Pose
 from control.snapshot import ZERO, Vector
-from server.recording.paths import Path, path_at
-from server.scene import View
-from server.scene_geometry import SceneGeometry
-from server.scene_robot import ShownRobot
+from server.recording.reading.paths import Path, path_at
+from server.scene.geometry import SceneGeometry
+from server.scene.robot import ShownRobot
+from server.scene.scene import View
 
 MM = 1e-3
 TRAIL = 60.0

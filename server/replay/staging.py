@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from server.recording.paths import paths_of
-from server.recording.reading import Recording
+from server.recording.reading.paths import paths_of
+from server.recording.reading.recording import Recording
 from server.replay.overview import series_of
 from server.replay.shown import MM, Course, ReplaySource
 from server.replay.then import rig_of
-from server.scene_geometry import SceneGeometry, geometry_of
+from server.scene.geometry import SceneGeometry, geometry_of
 from server.settings_in_si import coil_set
 
 log = logging.getLogger(__name__)

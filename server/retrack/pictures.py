@@ -8,7 +8,7 @@ import numpy as np
 
 from control.model import Frame
 from server.exports.run_film import in_order
-from server.recording.reading import Picture, Recording
+from server.recording.reading.recording import Picture, Recording
 from server.retrack.recorded_tick import RecordedTick
 from vision.film import decode_jpeg
 

@@ -12,8 +12,8 @@ from control.field import Corner, FieldTrace
 from control.model import PIVOT_A, PIVOT_B, Pivot, Pose
 from control.snapshot import Command
 from server.recording.messages import CommandMessage, Estimate, FieldMessage, Measurement, Reference, State
-from server.recording.reading import Recording
-from server.recording.tick_reading import Tick
+from server.recording.reading.recording import Recording
+from server.recording.reading.tick_reading import Tick
 from server.settings import MM
 
 TOPICS = ("/state", "/estimate", "/measurement", "/reference", "/command", "/field")

@@ -15,7 +15,7 @@ from server.api.choices import checked
 from server.api.problems import Rejected
 from server.api.schemas import ChoiceBody
 from server.custom_trajectories import CustomTrajectories
-from server.recording.reading import Recording, Unreadable
+from server.recording.reading.recording import Recording, Unreadable
 from server.recording.topics import SELECTION
 from server.replay.again import restore_path
 from server.retrack.asked import Answer, Asked

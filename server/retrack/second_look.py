@@ -7,7 +7,7 @@ import math
 from control.model import Frame, Measurement, Pose, Tracking
 from control.perception import Perception
 from control.recorded_field import RecordedField
-from server.optics import model_in_use
+from server.calibration.optics import model_in_use
 from server.retrack.recorded_tick import RecordedTick
 from server.settings import MM, MS, RigFile
 from server.settings_in_si import estimator_settings, field_slew

@@ -17,7 +17,7 @@ from control.runs import Choice, RunRequest, Selection
 from server.archive import Archive
 from server.assembly import build_machine
 from server.headless import Headless
-from server.recording.reading import Recording
+from server.recording.reading.recording import Recording
 from server.recording.topics import as_tick
 from server.settings import RigFile
 

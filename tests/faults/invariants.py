@@ -23,7 +23,7 @@ from control.news import Announcement
 from control.simulation.lockstep import Sample
 from control.simulation.protocol_sim import open_ports
 from control.snapshot import RigState, Snapshot, Vector
-from server.recording.reading import Recording
+from server.recording.reading.recording import Recording
 
 TICK = 1
 """Of the board, ms."""

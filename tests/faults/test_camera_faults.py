@@ -8,7 +8,7 @@ from control.arbiter import FRAME_TOO_LATE
 from control.model import Tracking
 from control.safety import Refused
 from control.snapshot import RigState
-from server.optics import assumed_model
+from server.calibration.optics import assumed_model
 from server.settings import RigFile
 from tests.faults.fault_bench import FaultBench, fault_bench
 from tests.faults.invariants import (

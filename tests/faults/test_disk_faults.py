@@ -12,8 +12,8 @@ from control.news import Announcement
 from control.safety import Refused
 from control.snapshot import RigState
 from server.archive import Archive
-from server.recording.reading import Recording
-from server.recording.recorder import LONGEST_WAIT, Recorder
+from server.recording.reading.recording import Recording
+from server.recording.writing.recorder import LONGEST_WAIT, Recorder
 from server.settings import RigFile
 from tests.faults.fault_bench import FaultBench, recorded
 from tests.faults.invariants import (

@@ -9,7 +9,7 @@ import numpy as np
 from server.app import create_app
 from server.archive import Archive
 from server.assembly import build_machine
-from server.optics import assumed_model
+from server.calibration.optics import assumed_model
 from server.rig import Rig
 from server.rig_changes import RigChanges
 from server.rig_file import RigStore

@@ -12,7 +12,7 @@ from server.archive import Archive
 from server.assembly import build_machine
 from server.catalogue.records import RunRecord
 from server.headless import Headless
-from server.recording.reading import Recording
+from server.recording.reading.recording import Recording
 from server.settings import RigFile
 
 

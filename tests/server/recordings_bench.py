@@ -23,7 +23,7 @@ from control.snapshot import RigState, RunProgress, Snapshot
 from server.archive import Archive
 from server.assembly import build_machine
 from server.recording.conditions import Conditions, conditions_of
-from server.recording.recorder import TAIL
+from server.recording.writing.recorder import TAIL
 from server.settings import RigFile
 
 RADIUS, PERIOD = 20e-3, 60.0

@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 from pathlib import Path
 
-from server.recording.disk import DiskFile, LocalDisk, LocalFile
+from server.recording.writing.disk import DiskFile, LocalDisk, LocalFile
 
 
 class Stuck(LocalDisk):

@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 
-from server.board_sheet import board_pdf, paper_for
+from server.calibration.board_sheet import board_pdf, paper_for
 from vision.calibration.board import Board, BoardFinder
 
 POINT = 25.4e-3 / 72.0

@@ -15,9 +15,9 @@ from control.registry import Parameters
 from control.runs import Choice, RunRequest, Selection
 from control.simulation.slip import NO_SLIP, SLIP_TABLE, SlipParameters
 from server.assembly import build_machine
+from server.calibration.gait import Star, calibrate_gait, changes
 from server.cli import app
 from server.commands.calibration_result import toml_lines
-from server.gait_calibration import Star, calibrate_gait, changes
 from server.headless import run_headless
 from server.rig_file import load_rig_file, merged
 from server.settings import RigFile

@@ -16,11 +16,11 @@ from control.runs import Choice, RunRequest, Selection
 from control.safety import Refused
 from control.snapshot import Snapshot
 from server.assembly import Machine, build_machine
+from server.calibration.latency import Latency, LatencyWalk, calibrate_latency
 from server.camera_sections import CameraSection
 from server.cli import app
 from server.diagnosis.latency import examine
 from server.headless import run_headless
-from server.latency_calibration import Latency, LatencyWalk, calibrate_latency
 from server.rig_file import load_rig_file
 from server.settings import EstimatorSection, LinkSection, RigFile
 

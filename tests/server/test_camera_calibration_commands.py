@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
+from server.calibration.optics import assumed_model, model_in_use
 from server.cli import app
-from server.optics import assumed_model, model_in_use
 from server.rig_file import load_rig_file
 from server.settings import RigFile
 from vision.calibration.board import Board

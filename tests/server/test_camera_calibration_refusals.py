@@ -9,10 +9,10 @@ import pytest
 from calibration_visit import PATIENCE, wizard
 
 from control.safety import Refused
-from server import camera_calibration
 from server.assembly import build_machine
-from server.camera_calibration import CameraCalibration
-from server.optics import assumed_model, board_of
+from server.calibration import camera as camera_calibration
+from server.calibration.camera import CameraCalibration
+from server.calibration.optics import assumed_model, board_of
 from server.rig import Rig
 from server.settings import RigFile
 from vision.calibration.plane import plane_from_corners

@@ -8,7 +8,7 @@ from control.gait import Gait
 from control.safety import Refused
 from control.snapshot import RigState
 from server.assembly import build_machine
-from server.optics import assumed_model, calibration_problem, misfit, model_in_use
+from server.calibration.optics import assumed_model, calibration_problem, misfit, model_in_use
 from server.settings import RigFile
 
 LENS = {

@@ -26,7 +26,7 @@ from server.exports.formats import ExportError, Job, export, export_file
 from server.exports.naming import file_name
 from server.exports.overlay import Overlay
 from server.exports.run_film import in_order
-from server.recording.reading import Picture, Recording
+from server.recording.reading.recording import Picture, Recording
 from server.settings import RigFile
 from tests.server.recordings_bench import RecordingsBench, Walk
 from tests.server.walked_run import walk

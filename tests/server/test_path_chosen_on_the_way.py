@@ -10,8 +10,8 @@ from server.archive import Archive
 from server.assembly import build_machine
 from server.exports.overlay import Overlay
 from server.recording.conditions import reference_points
-from server.recording.paths import MM, path_at, paths_of
-from server.recording.reading import Recording
+from server.recording.reading.paths import MM, path_at, paths_of
+from server.recording.reading.recording import Recording
 from server.replay.overview import overview_of
 from server.replay.shown import robot_of
 from server.replay.staging import course_of

@@ -21,13 +21,13 @@ from control.news import Announcement
 from control.runs import Choice, Run, RunRequest, RunState, Selection
 from control.snapshot import NOT_RECORDED
 from server.archive import Archive
-from server.recording import pictures, session
 from server.recording.clock import RunClock
-from server.recording.overview import Overview
-from server.recording.pictures import FrameRate
-from server.recording.reading import Recording
-from server.recording.recorder import TAIL
-from server.recording.recovery import recover
+from server.recording.reading.recording import Recording
+from server.recording.recovery.recover import recover
+from server.recording.writing import pictures, session
+from server.recording.writing.overview import Overview
+from server.recording.writing.pictures import FrameRate
+from server.recording.writing.recorder import TAIL
 from tests.server.recorded_walk import outcome_of
 from tests.server.recordings_bench import LENGTH, ZERO, RecordingsBench, Walk
 from vision.encoding import encode_jpeg

@@ -18,9 +18,9 @@ from control.safety import Refused
 from control.simulation.disk_faults import DiskFaults
 from server.archive import Archive
 from server.faulty_disk import FaultyDisk
-from server.recording.disk import LocalDisk, LocalFile
-from server.recording.reading import Recording
-from server.recording.recorder import LONGEST_WAIT
+from server.recording.reading.recording import Recording
+from server.recording.writing.disk import LocalDisk, LocalFile
+from server.recording.writing.recorder import LONGEST_WAIT
 from server.recording_section import RecordingSection
 from tests.server.mcap_doctor import examine
 from tests.server.recorded_walk import outcome_of

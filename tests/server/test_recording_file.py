@@ -12,10 +12,10 @@ import pytest
 from mcap.reader import make_reader
 
 from server.api import ticks
-from server.recording.recorder import TAIL
-from server.recording.run_file import FLUSH
 from server.recording.tick_json import as_tick
 from server.recording.topics import EACH_TICK, TOPICS
+from server.recording.writing.recorder import TAIL
+from server.recording.writing.run_file import FLUSH
 from tests.server.mcap_doctor import examine
 from tests.server.recorded_walk import record_walk
 

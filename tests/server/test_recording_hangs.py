@@ -14,9 +14,9 @@ from control.safety import Refused
 from server.archive import Archive
 from server.assembly import build_machine
 from server.commands.walk import HeadlessWalk, _archive
-from server.recording import disk_answer, recorder
-from server.recording.reading import Recording
-from server.recording.recorder import CLOSE_WITHIN
+from server.recording.reading.recording import Recording
+from server.recording.writing import disk_answer, recorder
+from server.recording.writing.recorder import CLOSE_WITHIN
 from server.run_recording import RunRecording
 from server.settings import RigFile
 from tests.server.recordings_bench import LENGTH, RecordingsBench, Walk, _run

@@ -17,9 +17,9 @@ from recordings_bench import RecordingsBench
 from torn_files import newest_tick, read_all, ticks_by_public_reader
 
 from server.catalogue.catalogue import Catalogue
-from server.recording.listing import listed
-from server.recording.reading import Recording
-from server.recording.recovery import recover
+from server.recording.reading.listing import listed
+from server.recording.reading.recording import Recording
+from server.recording.recovery.recover import recover
 from tests.processes import poll, served
 
 pytestmark = pytest.mark.exclusive

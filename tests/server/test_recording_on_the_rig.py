@@ -14,7 +14,7 @@ from typer.testing import CliRunner
 from server.archive import Archive
 from server.catalogue.opening import NAME
 from server.cli import app
-from server.recording.reading import Recording
+from server.recording.reading.recording import Recording
 from tests.processes import served
 from tests.server.rig_visit import act, arm, until, until_gone
 

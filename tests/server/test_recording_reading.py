@@ -11,7 +11,7 @@ from recordings_bench import ZERO, RecordingsBench, Walk
 from torn_files import is_recording
 
 from server.archive import Archive
-from server.recording.reading import Recording, Unreadable
+from server.recording.reading.recording import Recording, Unreadable
 
 DURATION, RATE, FRAME_RATE = 5.0, 60.0, 10.0
 OPENS_WITHIN = 1.0

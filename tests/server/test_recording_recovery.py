@@ -27,8 +27,8 @@ from server.archive import Archive
 from server.catalogue.catalogue import Catalogue
 from server.catalogue.deleting import delete_run
 from server.recording.presence import Presence
-from server.recording.reading import Recording
-from server.recording.recovery import is_being_written, recover
+from server.recording.reading.recording import Recording
+from server.recording.recovery.recover import is_being_written, recover
 
 DURATION = 4.0
 RUNNING = {"state": "running", "recording_state": "writing", "metrics": None, "ended_at": None, "frames": 0}

@@ -17,7 +17,7 @@ from server.assembly import build_machine
 from server.commands.runs import app
 from server.commands.runs_replay import what_was_asked
 from server.headless import Headless
-from server.recording.reading import Recording
+from server.recording.reading.recording import Recording
 from server.rig import Rig
 from server.settings import RigFile
 

@@ -12,7 +12,7 @@ from recordings_bench import RecordingsBench, Walk
 from server.app import create_app
 from server.archive import Archive
 from server.assembly import build_machine
-from server.recording.overview import MOST
+from server.recording.writing.overview import MOST
 from server.rig import Rig
 from server.settings import RigFile
 

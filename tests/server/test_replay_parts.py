@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from server.api.replay import LONGEST, NotAsked, request_in
 from server.replay.again import differences, label_again
 from server.replay.shown import TRAIL, Course, Instant, ReplaySource, robot_of
-from server.scene_geometry import geometry_of
+from server.scene.geometry import geometry_of
 from server.settings import RigFile
 from server.settings_in_si import coil_set
 

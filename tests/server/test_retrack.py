@@ -16,7 +16,7 @@ from server.archive import Archive
 from server.assembly import build_machine
 from server.commands.runs import app
 from server.headless import Headless
-from server.recording.reading import Recording
+from server.recording.reading.recording import Recording
 from server.retrack.changes import Changes, RetrackError, changed_rig
 from server.retrack.comparison import Seen
 from server.retrack.recorded_tick import recorded_ticks

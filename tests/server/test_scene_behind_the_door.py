@@ -13,15 +13,15 @@ from viser.infra import WebsockServer
 from websockets.exceptions import InvalidStatus
 
 from control.model import Pose
-from server import scene as scene_module
 from server.app import create_app
 from server.archive import Archive
 from server.assembly import build_machine
 from server.rig import Rig
-from server.scene import View
-from server.scene_bridge import CameraPose, admitted
-from server.scene_page import HIDDEN, PAGE, page
-from server.scene_robot import ShownRobot
+from server.scene import scene as scene_module
+from server.scene.bridge import CameraPose, admitted
+from server.scene.page import HIDDEN, PAGE, page
+from server.scene.robot import ShownRobot
+from server.scene.scene import View
 from server.settings import RigFile
 
 pytestmark = pytest.mark.anyio

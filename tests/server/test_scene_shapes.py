@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from control.coils import PAPER_PAIRS, CoilSet
 from control.model import Pose, pivot_point
-from server.scene_shapes import (
+from server.scene.shapes import (
     ARROW_LENGTH,
     FULL_FIELD,
     FieldArrows,

@@ -17,8 +17,8 @@ from mcap.records import Statistics
 from mcap_doctor import placed
 from recordings_bench import RecordingsBench, Walk
 
-from server.recording.reading import Recording, Unreadable
-from server.recording.tick_reading import Tick
+from server.recording.reading.recording import Recording, Unreadable
+from server.recording.reading.tick_reading import Tick
 
 HUGE = (1 << 20, (1 << 31) - 1, 1 << 31, (1 << 32) - 1, 1 << 40, 1 << 62, (1 << 63) - 1, (1 << 64) - 1)
 """What a length field may claim."""

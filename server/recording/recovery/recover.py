@@ -17,14 +17,14 @@ from typing import TYPE_CHECKING, Any
 from server.catalogue.errors import CatalogueError, NoSuchRun
 from server.catalogue.records import RUNNING
 from server.catalogue.shelf import RECORDING, TORN, WALKING, file_of
-from server.recording.byte_source import ByteSource, Damaged
-from server.recording.disk import LocalDisk, sync_folder
-from server.recording.finding import has_end, look_through
-from server.recording.listing import listed
 from server.recording.names import SETTINGS
-from server.recording.reading import Recording, Unreadable
-from server.recording.recovered_rows import end_row, put_recovered, put_torn
-from server.recording.repair import Repair
+from server.recording.reading.byte_source import ByteSource, Damaged
+from server.recording.reading.finding import has_end, look_through
+from server.recording.reading.listing import listed
+from server.recording.reading.recording import Recording, Unreadable
+from server.recording.recovery.recovered_rows import end_row, put_recovered, put_torn
+from server.recording.recovery.repair import Repair
+from server.recording.writing.disk import LocalDisk, sync_folder
 
 if TYPE_CHECKING:
     from server.catalogue.catalogue import Catalogue

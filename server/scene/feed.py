@@ -8,10 +8,10 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any, Generic, Protocol, TypeVar
 
-from server.scene import Scene, View
-from server.scene_bridge import SceneBridge
-from server.scene_geometry import SceneGeometry
-from server.scene_robot import LOOKS, Looks
+from server.scene.bridge import SceneBridge
+from server.scene.geometry import SceneGeometry
+from server.scene.robot import LOOKS, Looks
+from server.scene.scene import Scene, View
 from server.streams import Cadence, Mailbox, Publisher, StreamEnded
 
 T = TypeVar("T")

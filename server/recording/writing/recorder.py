@@ -18,10 +18,10 @@ from control.runs import Run
 from control.safety import Refused
 from control.snapshot import NOT_RECORDED, RecordingStatus, Snapshot
 from server.recording.conditions import Conditions
-from server.recording.disk import Disk, LocalDisk
-from server.recording.pictures import Encoder, FrameRate, Picture, frame_rate
-from server.recording.scribe import Scribe
-from server.recording.session import MEGA, Session, in_words
+from server.recording.writing.disk import Disk, LocalDisk
+from server.recording.writing.pictures import Encoder, FrameRate, Picture, frame_rate
+from server.recording.writing.scribe import Scribe
+from server.recording.writing.session import MEGA, Session, in_words
 from server.recording_section import RecordingSection
 
 if TYPE_CHECKING:

@@ -12,17 +12,17 @@ from mcap.records import Channel, Chunk, Schema
 from server.catalogue.records import INTERRUPTED
 from server.metrics_json import metrics_json
 from server.recording import mcap_format as mcap
-from server.recording.byte_source import ByteSource, Damaged
-from server.recording.contents import Contents, record_at
-from server.recording.disk import DiskFile
-from server.recording.listing import REASON
 from server.recording.mcap_format import ChunkPlace, Cursor, Message, Opcode, Place
-from server.recording.mcap_writer import Index, McapWriter
 from server.recording.names import JSON, OUTCOME, OVERVIEW, RECOVERED
-from server.recording.reading import NANO, Recording
-from server.recording.recount import Recount, number
-from server.recording.tick_reading import BESIDE_TICKS, Tick
+from server.recording.reading.byte_source import ByteSource, Damaged
+from server.recording.reading.contents import Contents, record_at
+from server.recording.reading.listing import REASON
+from server.recording.reading.recording import NANO, Recording
+from server.recording.reading.tick_reading import BESIDE_TICKS, Tick
+from server.recording.recovery.recount import Recount, number
 from server.recording.topics import CAMERA
+from server.recording.writing.disk import DiskFile
+from server.recording.writing.mcap_writer import Index, McapWriter
 from server.settings import MM, Robot
 
 DEFAULT_LENGTH = Robot().length_mm

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from control.model import Frame
 from control.safety import Refused
+from server.calibration.optics import assumed_model, board_of, lens_in_use, lens_section, plane_section, today
 from server.camera_sections import BoardSection, CameraSection
-from server.optics import assumed_model, board_of, lens_in_use, lens_section, plane_section, today
 from server.settings import MM
 from server.streams import StreamEnded
 from vision.calibration.board import BoardFinder, Sighting

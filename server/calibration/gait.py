@@ -15,7 +15,7 @@ from control.runs import Choice, RunRequest, Selection
 from control.safety import Refused
 from control.snapshot import Snapshot
 from server.assembly import Machine
-from server.calibration_walk import ENOUGH_PASSES, Findings, measured_today, with_advice
+from server.calibration.walk import ENOUGH_PASSES, Findings, measured_today, with_advice
 from server.headless import HeadlessRun, run_headless
 from server.settings import MM, MS, RigFile
 

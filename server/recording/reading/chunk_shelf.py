@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections import OrderedDict
 
 from server.recording import mcap_format as mcap
-from server.recording.byte_source import ByteSource, Damaged
-from server.recording.contents import Contents, record_at
 from server.recording.mcap_format import ChunkPlace, Message, Opcode
+from server.recording.reading.byte_source import ByteSource, Damaged
+from server.recording.reading.contents import Contents, record_at
 
 CHUNKS_KEPT = 8
 """Two seconds of recording."""

@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from control.snapshot import Snapshot
-from server.scene import View
-from server.scene_geometry import geometry_of
-from server.scene_robot import ShownRobot
+from server.scene.geometry import geometry_of
+from server.scene.robot import ShownRobot
+from server.scene.scene import View
 
 if TYPE_CHECKING:
     from server.rig import Rig

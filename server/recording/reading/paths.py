@@ -11,7 +11,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from server.recording.reading import Recording
+from server.recording.reading.recording import Recording
 from server.recording.topics import SELECTION
 
 MM = 1e-3

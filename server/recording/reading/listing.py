@@ -8,10 +8,10 @@ from datetime import UTC, datetime
 from typing import Any
 
 from server.catalogue.records import INTERRUPTED, RUNNING, RunRecord
-from server.recording.overview import spread
-from server.recording.reading import Recording
-from server.recording.recount import number
-from server.recording.row import record_of
+from server.recording.reading.recording import Recording
+from server.recording.recovery.recount import number
+from server.recording.writing.overview import spread
+from server.recording.writing.row import record_of
 
 REASON = "the program ended before the run did"
 """Of a run that was interrupted."""

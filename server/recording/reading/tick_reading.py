@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any
 
 from server.recording.mcap_format import Message
-from server.recording.timeline import ALWAYS, Timeline
+from server.recording.reading.timeline import ALWAYS, Timeline
 from server.recording.topics import CALIBRATION, CAMERA, EVENTS, SELECTION
 
 BESIDE_TICKS = frozenset(topic.name for topic in (CAMERA, CALIBRATION, EVENTS, SELECTION))

@@ -17,15 +17,15 @@ from typing import Any
 import msgspec
 
 from server.recording import mcap_format as mcap
-from server.recording.byte_source import ByteSource, Damaged
-from server.recording.chunk_shelf import ChunkShelf
-from server.recording.contents import Contents, record_at
-from server.recording.finding import look_through
 from server.recording.foxglove import LEVELS
 from server.recording.mcap_format import Message, Opcode
 from server.recording.names import METADATA, OUTCOME, OVERVIEW, RECOVERED, SETTINGS
-from server.recording.tick_reading import Tick, TickReader
-from server.recording.timeline import ALWAYS, Timeline
+from server.recording.reading.byte_source import ByteSource, Damaged
+from server.recording.reading.chunk_shelf import ChunkShelf
+from server.recording.reading.contents import Contents, record_at
+from server.recording.reading.finding import look_through
+from server.recording.reading.tick_reading import Tick, TickReader
+from server.recording.reading.timeline import ALWAYS, Timeline
 from server.recording.topics import CAMERA, EVENTS
 
 NANO = 1_000_000_000

@@ -7,9 +7,9 @@ import zlib
 from collections.abc import Iterator
 
 from server.recording import mcap_format as mcap
-from server.recording.byte_source import ByteSource, Damaged
-from server.recording.contents import Contents, record_at
 from server.recording.mcap_format import ChunkPlace, Cursor, Opcode, Place
+from server.recording.reading.byte_source import ByteSource, Damaged
+from server.recording.reading.contents import Contents, record_at
 
 TAIL = mcap.HEAD.size + mcap.FOOTER.size + len(mcap.MAGIC)
 """Footer and magic at the end of a whole file, bytes."""

@@ -18,13 +18,13 @@ from server.api.choices import selection_json
 from server.recording import foxglove
 from server.recording.clock import RunClock
 from server.recording.conditions import reference_points
-from server.recording.disk import Disk, DiskFile, sync_folder
-from server.recording.mcap_writer import McapWriter
 from server.recording.messages import OfTick, SelectionMessage
 from server.recording.names import JSON, METADATA, OUTCOME, OVERVIEW, SETTINGS
-from server.recording.pictures import Picture
 from server.recording.provenance import versions
 from server.recording.topics import CALIBRATION, CAMERA, EACH_TICK, EVENTS, SELECTION, TOPICS
+from server.recording.writing.disk import Disk, DiskFile, sync_folder
+from server.recording.writing.mcap_writer import McapWriter
+from server.recording.writing.pictures import Picture
 from vision.camera_model import CameraModel
 
 FLUSH = 0.25

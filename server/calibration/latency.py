@@ -14,7 +14,7 @@ from control.model import Pose
 from control.runs import Choice, RunRequest, Selection
 from control.snapshot import Snapshot
 from server.assembly import Machine
-from server.calibration_walk import ENOUGH_PASSES, Findings, measured_today
+from server.calibration.walk import ENOUGH_PASSES, Findings, measured_today
 from server.headless import run_headless
 from server.settings import MS
 

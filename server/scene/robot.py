@@ -9,8 +9,8 @@ import viser
 from numpy.typing import NDArray
 
 from control.model import Pivot, Pose, pivot_point
-from server.scene_geometry import RobotSize
-from server.scene_shapes import body_attitude, segments_through
+from server.scene.geometry import RobotSize
+from server.scene.shapes import body_attitude, segments_through
 
 CM = 100.0
 """Scene units per metre."""

@@ -10,8 +10,8 @@ from control.axes import AXES
 from control.gait import Counts
 from control.metrics import Metrics, MetricsTally
 from control.model import Pose
-from server.recording.overview import Overview, Series
-from server.recording.tick_reading import Tick
+from server.recording.reading.tick_reading import Tick
+from server.recording.writing.overview import Overview, Series
 
 MM = 1e-3
 PLACE = ("x_mm", "y_mm", "heading_deg")

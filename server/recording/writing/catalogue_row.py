@@ -18,7 +18,7 @@ from server.catalogue.errors import CatalogueError, NoSuchRun
 from server.metrics_json import metrics_json
 from server.recording.conditions import Conditions, settings_json
 from server.recording.presence import Presence
-from server.recording.row import record_of
+from server.recording.writing.row import record_of
 
 if TYPE_CHECKING:
     from server.catalogue.catalogue import Catalogue

@@ -6,8 +6,8 @@ from bisect import bisect_left, bisect_right
 from collections.abc import Collection, Iterator
 from itertools import accumulate
 
-from server.recording.chunk_shelf import ChunkShelf
 from server.recording.mcap_format import ChunkPlace, Message
+from server.recording.reading.chunk_shelf import ChunkShelf
 
 ALWAYS = 1 << 64
 """Later than every log time, ns."""

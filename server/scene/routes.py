@@ -10,8 +10,8 @@ from starlette.requests import Request
 from starlette.responses import RedirectResponse, Response
 
 from server.replay.sessions import ReplaySessions
-from server.scene_feed import SceneFeed
-from server.scene_page import scene_page
+from server.scene.feed import SceneFeed
+from server.scene.page import scene_page
 from server.streams import StreamEnded
 
 log = logging.getLogger(__name__)

@@ -21,7 +21,7 @@ from control.runs import RunState
 from control.safety import Refused
 from control.snapshot import RigState
 from server.assembly import Machine
-from server.calibration_walk import CalibrationWalk, Findings, changed_since, with_advice
+from server.calibration.walk import CalibrationWalk, Findings, changed_since, with_advice
 from server.settings import RigFile
 from server.streams import StreamEnded
 

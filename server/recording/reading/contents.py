@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 from typing import TypeVar
 
 from server.recording import mcap_format as mcap
-from server.recording.byte_source import ByteSource, Damaged
 from server.recording.mcap_format import Channel, ChunkPlace, Cursor, Opcode, Place, Schema
+from server.recording.reading.byte_source import ByteSource, Damaged
 
 NAMES_LIMIT = 1000
 """Schemas, channels, attachments or metadata records that are believed; a recording has about 20 of each."""

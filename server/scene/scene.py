@@ -1,6 +1,6 @@
 """A rig in three dimensions, in Viser: coils to scale, the field, robots with their tilt, paths and trails.
 
-Viser listens on loopback only and is reached through `server.scene_bridge`. Nothing in it can act on the rig.
+Viser listens on loopback only and is reached through `server.scene.bridge`. Nothing in it can act on the rig.
 The scene's unit is the centimetre: Viser's near plane and lights suit lengths of 1 to 100.
 """
 
@@ -18,9 +18,9 @@ from viser import _messages as viser_messages
 
 from control.coils import CoilPair
 from control.snapshot import Vector
-from server.scene_geometry import SceneGeometry
-from server.scene_robot import CM, LINE_HEIGHT, LOOKS, Colour, Looks, RobotNodes, ShownRobot
-from server.scene_shapes import FieldArrows, ring_segments, square
+from server.scene.geometry import SceneGeometry
+from server.scene.robot import CM, LINE_HEIGHT, LOOKS, Colour, Looks, RobotNodes, ShownRobot
+from server.scene.shapes import FieldArrows, ring_segments, square
 
 PAIR_COLOURS: dict[str, Colour] = {"x": (213, 94, 0), "y": (0, 158, 115), "z": (0, 114, 178)}
 """Okabe and Ito's palette, which survives colour blindness."""

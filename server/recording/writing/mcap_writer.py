@@ -35,7 +35,7 @@ from mcap.records import (
     SummaryOffset,
 )
 
-from server.recording.disk import DiskFile
+from server.recording.writing.disk import DiskFile
 
 MAGIC = bytes((137, 77, 67, 65, 80, 48, 13, 10))
 MESSAGE = struct.Struct("<BQHIQQ")

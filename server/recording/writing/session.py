@@ -20,13 +20,13 @@ from control.news import Announcement
 from control.runs import Run
 from control.snapshot import Snapshot
 from server.metrics_json import metrics_json
-from server.recording.catalogue_row import CatalogueRow
 from server.recording.clock import RunClock
 from server.recording.conditions import Conditions, settings_json
-from server.recording.disk import Disk
-from server.recording.overview import Overview, point_of
-from server.recording.pictures import Picture
-from server.recording.run_file import RunFile
+from server.recording.writing.catalogue_row import CatalogueRow
+from server.recording.writing.disk import Disk
+from server.recording.writing.overview import Overview, point_of
+from server.recording.writing.pictures import Picture
+from server.recording.writing.run_file import RunFile
 
 if TYPE_CHECKING:
     from server.catalogue.catalogue import Catalogue

@@ -10,8 +10,8 @@ from server.catalogue.edits import edits_beside
 from server.catalogue.errors import NoSuchRun
 from server.catalogue.records import INTERRUPTED, RUNNING, RunRecord
 from server.catalogue.shelf import file_of
-from server.recording.listing import REASON, listed
-from server.recording.reading import Recording, Unreadable
+from server.recording.reading.listing import REASON, listed
+from server.recording.reading.recording import Recording, Unreadable
 
 if TYPE_CHECKING:
     from server.catalogue.catalogue import Catalogue

@@ -1,0 +1,1 @@
+"""A recording, read back; the file is never trusted."""

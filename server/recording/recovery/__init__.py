@@ -1,0 +1,1 @@
+"""What a program that died has left is mended."""
