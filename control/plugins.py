@@ -44,13 +44,18 @@ def load_file(path: Path) -> tuple[str, ...]:
         raise PluginError(f"the plug-in {path} is not a Python file; its name must end in .py")
     loader, module = spec.loader, importlib.util.module_from_spec(spec)
     sys.modules[name] = module
-    return _guarded(str(path), lambda: loader.exec_module(module), str(path))
+    try:
+        return _guarded(str(path), lambda: loader.exec_module(module), str(path))
+    except PluginError:
+        del sys.modules[name]
+        raise
 
 
 def loaded_files() -> list[Path]:
-    """The plug-in files that were run, for a process that has to know the same names."""
-    modules = [module for name, module in list(sys.modules.items()) if name.startswith(MODULES)]
-    return [Path(module.__file__) for module in modules if module.__file__ is not None]
+    """The plug-in files in use, for a process that has to know the same names."""
+    names = {entry.__module__: None for registry, _ in GROUPS.values() for entry in registry.values()}
+    files = [sys.modules[name].__file__ for name in names if name.startswith(MODULES)]
+    return [Path(file) for file in files if file is not None]
 
 
 def load_installed() -> list[PluginError]:

@@ -39,6 +39,8 @@ class RunRecording:
         self._recorder = recorder
         self._disk_answer = DiskAnswer()
         self._run: Run | None = None
+        self._hung: Run | None = None
+        """A run that has ended while the loop did not answer: its figures may come later."""
         self._is_kept = False
         self._broken = ""
         self._frames_told = False
@@ -92,11 +94,16 @@ class RunRecording:
     def end(self, ended: Ended) -> None:
         if self._run is not None and self._run.id == ended.id:
             self._end(replace(self._run, state=ended.state, reason=ended.reason, metrics=ended.metrics))
+        elif self._hung is not None and self._hung.id == ended.id:
+            late = replace(self._hung, metrics=ended.metrics)
+            self._hung = None
+            self._hand_over(lambda recorder: recorder.add_figures(late))
 
     def abort(self, reason: str) -> None:
         """The rig's thread hangs; from another one."""
         if self._run is not None:
-            self._end(replace(self._run, state=RunState.ABORTED, reason=reason))
+            self._hung = replace(self._run, state=RunState.ABORTED, reason=reason)
+            self._end(self._hung)
 
     def leave(self) -> None:
         """The rig becomes another one; what is still recorded of the last run ends with this one."""

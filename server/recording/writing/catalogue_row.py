@@ -81,5 +81,17 @@ class CatalogueRow:
 
 def _ending(run: Run, ended_at: datetime | None) -> dict[str, Any]:
     """How the run has ended."""
-    metrics = None if run.metrics is None else metrics_json(run.metrics)
-    return {"state": run.state.value, "reason": run.reason, "ended_at": ended_at, "metrics": metrics}
+    return {"state": run.state.value, "reason": run.reason, "ended_at": ended_at, **_figures(run)}
+
+
+def _figures(run: Run) -> dict[str, Any]:
+    """Those that are known; a loop that hangs tells them when it comes back."""
+    return {} if run.metrics is None else {"metrics": metrics_json(run.metrics)}
+
+
+def add_figures(catalogue: Catalogue, run: Run) -> None:
+    """Of a run that has ended before they were known."""
+    try:
+        catalogue.update(run.id, **_figures(run))
+    except CatalogueError as error:
+        log.error("run %s: %s", run.id, error)

@@ -18,6 +18,7 @@ from control.runs import Run
 from control.safety import Refused
 from control.snapshot import NOT_RECORDED, RecordingStatus, Snapshot
 from server.recording.conditions import Conditions
+from server.recording.writing.catalogue_row import add_figures
 from server.recording.writing.disk import Disk, LocalDisk
 from server.recording.writing.pictures import Encoder, FrameRate, Picture, frame_rate
 from server.recording.writing.scribe import Scribe
@@ -147,6 +148,10 @@ class Recorder:
             self._scribe.put(lambda: session.end(run, ended_at))
             if session.failure:
                 self._finish()
+
+    def add_figures(self, run: Run) -> None:
+        """The metrics of a run that has ended without them."""
+        self._scribe.put(lambda: add_figures(self._catalogue, run))
 
     def finish(self) -> None:
         """Whatever is recorded ends here: the rig of its ticks is about to be another one, with another clock."""
