@@ -54,10 +54,16 @@ async function load() {
   showRunPath(newest.runs.find(({ state }) => state === "running")?.trajectory);
 }
 
-/** The rig's values, its file and its camera, which change when somebody changes the rig file. */
+let rigAsked = 0;
+
+/**
+ * The rig's values, its file and its camera, which change when somebody changes the rig file. Each change is told
+ * twice within a moment; an older answer never replaces a newer one.
+ */
 async function loadRig() {
+  const own = (rigAsked += 1);
   const [rig, camera] = await Promise.all(["/rig", "/camera"].map(read));
-  set({ rig, camera });
+  if (own === rigAsked) set({ rig, camera });
 }
 
 function receive(data) {

@@ -52,7 +52,8 @@ async function ask(cursor, take) {
     lookAgainIfUnfinished();
   } catch (problem) {
     if (!(problem instanceof Problem)) throw problem;
-    if (own === asked) change({ loading: false, error: problem.message });
+    // A silent server is the connection's story, and the list is asked for again when it is back.
+    if (own === asked) change({ loading: false, error: problem.status === 0 ? "" : problem.message });
   }
 }
 
