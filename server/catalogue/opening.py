@@ -98,7 +98,10 @@ def _exchanged(path: Path) -> Opened:
         return _opened_in_turn(path)
     except NotACatalogue:
         aside = path.with_name(f"{NAME}.broken-{datetime.now():%Y%m%d-%H%M%S-%f}")
-        for side in ("", *SIDE_FILES):
+        for side in (
+            *SIDE_FILES,
+            "",
+        ):  # its own name last: from then on another program may make a new one there
             if os.path.exists(f"{path}{side}"):
                 os.replace(f"{path}{side}", f"{aside}{side}")
     fresh = _opened_in_turn(path)
