@@ -57,8 +57,10 @@ class SeparateBoard:
 
     @property
     def milliseconds(self) -> int:
-        """The board's own time."""
-        return self.monitor.take()[-1].milliseconds
+        """The board's own time; waits for its next millisecond where all before it have been taken."""
+        while not (samples := self.monitor.take()):
+            time.sleep(0.001)
+        return samples[-1].milliseconds
 
 
 @contextmanager
