@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from server.calibration.camera import CameraCalibration, Look
-from server.calibration.optics import board_of, height_and_tilt, misfit, model_in_use, scale
+from server.calibration.optics import board_of, height_and_tilt, lens_figures, misfit, model_in_use, scale
 from server.settings import MM
 from vision.calibration.lens import LensFit
 from vision.calibration.plane import PlaneFit
@@ -102,19 +102,7 @@ def looked_json(calibration: CameraCalibration, look: Look) -> dict[str, Any]:
 
 
 def pending_lens_json(fit: LensFit) -> dict[str, Any]:
-    lens = fit.lens
-    return {
-        "size_px": list(lens.size),
-        "fx": round(lens.fx, 4),
-        "fy": round(lens.fy, 4),
-        "cx": round(lens.cx, 4),
-        "cy": round(lens.cy, 4),
-        "distortion": [round(value, 7) for value in lens.distortion],
-        "residual_px": round(fit.residual, 4),
-        "error_px": round(lens.error, 5),
-        "views": fit.views,
-        "dropped": list(fit.dropped),
-    }
+    return {**lens_figures(fit), "dropped": list(fit.dropped)}
 
 
 def pending_plane_json(calibration: CameraCalibration, fit: PlaneFit) -> dict[str, Any]:

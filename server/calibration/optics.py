@@ -118,10 +118,13 @@ def today() -> str:
 
 def lens_section(fit: LensFit, identity: str, date: str) -> dict[str, Any]:
     """A lens for the rig file."""
+    return {"identity": identity, "date": date, **lens_figures(fit)}
+
+
+def lens_figures(fit: LensFit) -> dict[str, Any]:
+    """What was found of a lens, as the rig file and the page have it."""
     lens = fit.lens
     return {
-        "identity": identity,
-        "date": date,
         "size_px": list(lens.size),
         "fx": round(lens.fx, 4),
         "fy": round(lens.fy, 4),

@@ -6,10 +6,9 @@ import time
 from typing import Any
 
 import httpx
-import msgspec
 import pytest
 import viser
-import zstandard
+from scene_visit import seen
 from websockets.exceptions import ConnectionClosed
 
 from control.runs import Choice, RunRequest, Selection
@@ -215,21 +214,6 @@ async def test_only_so_many_replays_are_open_at_once_and_each_ends_with_its_page
 # The scene ---------------------------------------------------------------------------------------
 
 
-def messages_in(data):
-    """Viser's messages in one frame: sizes, compressed msgpack, then raw arrays."""
-    whole, compressed = struct.unpack_from("<QQ", data)
-    payload = zstandard.ZstdDecompressor().decompress(data[16 : 16 + compressed], max_output_size=whole)
-    return msgspec.msgpack.decode(payload)["messages"]
-
-
-async def seen_in(viewer, wanted):
-    found = []
-    async with asyncio.timeout(10.0):
-        while not any(map(wanted, found)):
-            found += messages_in(await viewer.recv())
-    return found
-
-
 def moves(name):
     return lambda message: message["type"] == "SetPositionMessage" and message["name"] == name
 
@@ -244,7 +228,7 @@ async def test_a_replay_has_a_scene_of_its_own_with_both_robots(there):
         session = page.ready["session"]
         answer = await page.ask(1.5)
         async with viewer_of(there, session) as viewer:
-            found = await seen_in(viewer, moves("/compared/1/robot"))
+            found = await seen(viewer, moves("/compared/1/robot"))
         places = {m["name"]: m["position"] for m in found if m["type"] == "SetPositionMessage"}
         for name, tick in zip(("/robot", "/compared/1/robot"), answer["ticks"], strict=True):
             pose = tick["pose"]
@@ -267,9 +251,9 @@ async def test_a_scene_of_a_replay_follows_what_is_asked_for(there):
     async with replay(there, "one") as page:
         await page.ask(0.5)
         async with viewer_of(there, page.ready["session"]) as viewer:
-            await seen_in(viewer, moves("/robot"))
+            await seen(viewer, moves("/robot"))
             tick = (await page.ask(3.5))["ticks"][0]
-            found = await seen_in(viewer, moves("/robot"))
+            found = await seen(viewer, moves("/robot"))
         position = next(m for m in reversed(found) if moves("/robot")(m))["position"]
         assert position[:2] == pytest.approx([tick["pose"]["x_mm"] / 10, tick["pose"]["y_mm"] / 10], abs=0.25)
 

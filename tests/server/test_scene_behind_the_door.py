@@ -1,13 +1,12 @@
 import asyncio
 import inspect
-import struct
 from dataclasses import replace
 
 import msgspec
 import numpy as np
 import pytest
 import viser
-import zstandard
+from scene_visit import seen
 from viser import _messages
 from viser.infra import WebsockServer
 from websockets.exceptions import InvalidStatus
@@ -43,22 +42,6 @@ POSE = {
 
 def packed(**changes):
     return msgspec.msgpack.encode({**POSE, **changes})
-
-
-def messages_in(data):
-    """Viser's messages in one frame: sizes, compressed msgpack, then raw arrays."""
-    whole, compressed = struct.unpack_from("<QQ", data)
-    payload = zstandard.ZstdDecompressor().decompress(data[16 : 16 + compressed], max_output_size=whole)
-    return msgspec.msgpack.decode(payload)["messages"]
-
-
-async def seen(viewer, wanted):
-    """All messages of the scene up to the first one that `wanted` accepts."""
-    found = []
-    async with asyncio.timeout(10.0):
-        while not any(map(wanted, found)):
-            found += messages_in(await viewer.recv())
-    return found
 
 
 def viewer_of(at, **options):
