@@ -42,6 +42,8 @@ ASSUMED_ENDS = (
     "nothing but vision.heading_hint_deg tells which end of the robot is A: check it in the picture; if it is the "
     "wrong one, disarm and turn the robot round, or give end A a mark"
 )
+PAUSED = "paused by the operator"
+"""Why a run is held that a person has paused, and that the same person lets go on."""
 UNKNOWN_HEAT = (
     f"what the coils carried before this start is not known: they count as {ASSUMED_AT_START:.0%} hot"
 )
@@ -221,7 +223,21 @@ class ControlLoop:
         """Hold the run: zero current, and go on with `resume`."""
         if self._walk is None:
             raise Refused("there is no run to pause")
-        self._hold("paused by the operator", "info")
+        self._hold(PAUSED, "info")
+
+    def rest(self, reason: str) -> None:
+        """Coils off on an armed rig that has no run; `resume` brings the field back. Raises `Refused`."""
+        if self._walk is not None or self._state is not RigState.ARMED:
+            raise Refused(f"only an armed rig without a run can rest; it is {self._state}")
+        self._hold(reason, "info")
+
+    def abandon_run(self, reason: str) -> None:
+        """End the run for good and hold the rig, with the coils off, so that `resume` leads to an armed rig."""
+        if self._walk is None:
+            raise Refused("there is no run to abandon")
+        if self._state is not RigState.HELD:
+            self._hold(reason, "warn")
+        self._end_run(RunState.ABORTED, reason)
 
     def resume(self) -> None:
         """Go on after a hold, from where the robot is; raises `Refused` while the cause is there."""

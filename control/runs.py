@@ -44,6 +44,7 @@ class RunRequest:
     """A run to start. passes: of the reference path.  duration: a cap, s, None for no cap.
 
     unattended: the run belongs to the server and outlives the browser that started it.
+    study, study_run: the id of the study that it belongs to, and which of its runs it is; "" and None for none.
     """
 
     selection: Selection
@@ -52,6 +53,8 @@ class RunRequest:
     unattended: bool = False
     label: str = ""
     tags: tuple[str, ...] = ()
+    study: str = ""
+    study_run: int | None = None
 
 
 class RunState(StrEnum):

@@ -35,7 +35,7 @@ class Steering:
         """walk: the run that is walking, if any.  gap: since the last tick, s.  Raises what a walk raises."""
         if walk is None:
             return self._by_hand(now)
-        return walk.step(now, gap, pose, self._parts.field, self._parts.perception)
+        return walk.step(now, gap, pose, self._parts.field, self._parts.perception.backlash.lead)
 
     def leads_out(self, stride: Stride, pose: Pose, now: float) -> bool:
         """Whether the robot, told to stop at the next tick, would by then have left where it may be.

@@ -12,7 +12,6 @@ from control.gait import Gait
 from control.gait_model import GaitModel
 from control.metrics import Metrics, MetricsTally
 from control.model import Pivot, Pose
-from control.perception import Perception
 from control.runs import RunRequest, Selection
 from control.snapshot import RunProgress
 from control.trajectories import Trajectory
@@ -88,8 +87,10 @@ class Walk:
         self.walker.change(self._case(selection.build_controller()), selection.gait)
         self.request = replace(self.request, selection=selection)
 
-    def step(self, now: float, elapsed: float, pose: Pose, field: Field, perception: Perception) -> Stride:
-        """One tick of `elapsed` seconds."""
+    def step(
+        self, now: float, elapsed: float, pose: Pose, field: Field, lead: Callable[[float], float]
+    ) -> Stride:
+        """One tick of `elapsed` seconds. lead: of the field before the body, by direction, rad."""
         if not field.is_ready:
             return Stride(self.walker.sweep.pivot, 0.0, field.heading)
         self.elapsed += elapsed
@@ -105,7 +106,7 @@ class Walk:
             reference_time=self._reference.time,
             trajectory=self._reference.trajectory,
             field_settled=field.is_settled,
-            lead=perception.backlash.lead,
+            lead=lead,
             workspace=self.workspace,
             slip=self.gait_model or GaitModel(self._length, switch_time=field.ramp),
         )

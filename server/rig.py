@@ -58,12 +58,14 @@ class Rig(RigLife):
         await self._ask(lambda: self._loop.arm(gait, consent=consent))
 
     async def disarm(self) -> None:
+        self.occupation.stop("the operator disarmed the rig")
         await self._ask(lambda: self._loop.disarm())
 
     async def estop(self) -> None:
         """Zero at once, then latch; always succeeds, and soon, even where the loop hangs."""
         self._stops += 1
         self._loop.estop()
+        self.occupation.stop("emergency stop")
         with contextlib.suppress(TimeoutError, Refused):
             latch = self._ask(lambda: self._loop.latch_estop())
             await asyncio.wait_for(asyncio.shield(latch), ESTOP_ANSWER)
@@ -72,9 +74,15 @@ class Rig(RigLife):
         await self._ask(lambda: self._loop.reset())
 
     async def jog(self, jog: Jog) -> None:
+        self.occupation.require_none()
         await self._ask(lambda: self._loop.jog(jog))
 
     async def start_run(self, request: RunRequest) -> Run:
+        self.occupation.require_none()
+        return await self.begin_run(request)
+
+    async def begin_run(self, request: RunRequest) -> Run:
+        """`start_run` for who has the rig to itself."""
         id = new_id()
         await asyncio.to_thread(self._recording.check, self._machine)
         await self._ask(lambda: self._start(id, request))
@@ -90,6 +98,7 @@ class Rig(RigLife):
 
     async def change_run(self, change: Callable[[Selection], Selection]) -> Run:
         """`change` makes the new selection of the old one, so that two changes at once both count."""
+        self.occupation.require_none()
         id = await self._ask(lambda: self._change(change))
         return self.runs.of(id)
 
@@ -104,6 +113,7 @@ class Rig(RigLife):
         return run.id
 
     async def stop_run(self) -> None:
+        self.occupation.stop("the operator stopped its run")
         await self._ask(lambda: self._loop.stop_run())
 
     async def pause_run(self) -> None:
@@ -131,6 +141,7 @@ class Rig(RigLife):
 
     async def retune(self, settings: RigFile) -> None:
         """Settings of which only the robot's looks are new, for the tracker; raises `Refused` unless disarmed."""
+        self.occupation.require_none()
         await self._ask(lambda: self._retune(settings))
         self._announce_settings()
 
@@ -148,6 +159,7 @@ class Rig(RigLife):
 
         Raises `Refused`, and then the rig is as it was, unless it is `NoMachine`.
         """
+        self.occupation.require_none()
         await asyncio.shield(asyncio.ensure_future(self._rebuild(settings)))
 
     async def _rebuild(self, settings: RigFile) -> None:

@@ -26,6 +26,7 @@ from server.assembly import Machine, build_machine
 from server.custom_trajectories import CustomTrajectories
 from server.event_log import EventLog
 from server.exchange import Build
+from server.occupation import Occupation
 from server.rig_thread import RigThread
 from server.run_list import RunList
 from server.run_recording import RunRecording
@@ -80,6 +81,7 @@ class RigLife:
         self._log = EventLog()
         self.updates: Publisher[Snapshot] = Publisher()
         self.custom_trajectories = CustomTrajectories()
+        self.occupation = Occupation()
 
     @property
     def machine(self) -> Machine:
@@ -152,6 +154,7 @@ class RigLife:
         """Zero now; for signal handlers."""
         self._stops += 1
         self._machine.loop.estop(code, reason)
+        self.occupation.stop(reason, is_end=code == "ended")
 
     def _end_run(self) -> None:
         """The program ends, and so does a run; its recording says why."""

@@ -9,6 +9,8 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, field_validator, model_validator
 
+from control.simulation.plants import PlantChoice, SlipChoiceParameters
+from control.simulation.rigid.parameters import RigidParameters
 from control.simulation.wiring import Wiring
 from server.camera_sections import LIVE, SIMULATED_CAMERA, CameraSection
 from server.coil_sections import Coils, LimitsSection, PerCoil, RegistrationSection
@@ -93,7 +95,10 @@ class GaitSection(Section):
 class SimulationSection(Section):
     """The simulated rig; only read where the camera or the port is simulated."""
 
-    plant: Literal["slip", "noslip"] = "slip"
+    plant: Literal["slip", "noslip", "rigid"] = "slip"
+    slip: SlipChoiceParameters = SlipChoiceParameters()
+    """Of the plant slip; the others' parameters wait until they are chosen."""
+    rigid: RigidParameters = RigidParameters()
     seed: Annotated[int, Field(ge=0, le=2**31 - 1)] = 1
     board: str = Field(default="twin", pattern=r"^(twin|emulated|tcp://\S+)$")
     """twin: the board's twin in this process; emulated: the compiled firmware in an emulator, which is built and
@@ -117,6 +122,12 @@ class SimulationSection(Section):
     """The true gains of the fields x, y, z; without it those that the rig file gives the coils."""
     registration: RegistrationSection | None = None
     """Where the coils truly stand; without it where the rig file says."""
+
+    @property
+    def plant_choice(self) -> PlantChoice:
+        """The simulated robot with the parameters of its own section."""
+        sections = {"slip": self.slip, "rigid": self.rigid}
+        return PlantChoice(self.plant, sections[self.plant].model_dump() if self.plant in sections else {})
 
     @field_validator("scene")
     @classmethod

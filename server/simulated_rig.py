@@ -12,7 +12,7 @@ from control.model import Pose
 from control.simulation.board import TwinBoard, Winding
 from control.simulation.emulated import EmulatedBoard, prepare
 from control.simulation.lockstep import RemoteBoard
-from control.simulation.plant import build_plant
+from control.simulation.plants import build_plant
 from control.simulation.wiring import Wiring
 from control.simulation.world import Board, World
 from server.calibration.optics import assumed_model
@@ -35,7 +35,7 @@ def simulated_world(settings: RigFile, coils: CoilSet, realtime: bool) -> tuple[
     start = Pose(
         simulation.start_x_mm * MM, simulation.start_y_mm * MM, math.radians(simulation.start_heading_deg)
     )
-    plant = build_plant(simulation.plant, settings.robot.length_mm * MM, start, simulation.seed)
+    plant = build_plant(simulation.plant_choice, settings.robot.length_mm * MM, start, simulation.seed)
     true_coils, wiring = _true_coils(settings, coils), Wiring(simulation.wiring)
     board, port = _board(settings, realtime)
     return World(board, plant, true_coils, wiring=wiring), port

@@ -8,6 +8,7 @@ from control.controllers.planner import Planner
 from control.controllers.sequence import Sequence
 from control.controllers.star import Star
 from control.controllers.straight import Straight
+from control.controllers.to_pose import ToPose
 from control.controllers.wiggle import Wiggle
 
 __all__ = [
@@ -22,6 +23,7 @@ __all__ = [
     "Situation",
     "Star",
     "Straight",
+    "ToPose",
     "Wiggle",
     "controllers",
 ]

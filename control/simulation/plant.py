@@ -14,7 +14,7 @@ import random
 from dataclasses import dataclass
 
 from control.model import PIVOT_A, PIVOT_B, TURN, Pivot, Pose, pivot_point
-from control.simulation.slip import NO_SLIP, SLIP_TABLE, Slip, SlipParameters
+from control.simulation.slip import Slip, SlipParameters
 from control.snapshot import Vector
 
 REST_FIELD = 0.5e-3
@@ -190,13 +190,3 @@ class SlipPlant:
         self._pivot = pivot
         self._pivot_x, self._pivot_y = pivot_point(self.pose, pivot, self.length)
         self._sweep_start = self._heading
-
-
-PLANTS = {"slip": SLIP_TABLE, "noslip": NO_SLIP}
-
-
-def build_plant(name: str, length: float, start: Pose, seed: int = 0) -> SlipPlant:
-    """The plant that the rig file names; raises ValueError for one that there is not."""
-    if name not in PLANTS:
-        raise ValueError(f"unknown plant {name!r}: choose one of {', '.join(sorted(PLANTS))}")
-    return SlipPlant(PLANTS[name], length, start, seed)

@@ -10,7 +10,8 @@ from collections.abc import Callable, Sequence
 from typing import Protocol
 
 from control.coils import CoilSet
-from control.model import Body, Pivot, Pose
+from control.model import Body, Pose
+from control.simulation.plants import Plant
 from control.simulation.wiring import STRAIGHT, Wiring
 from control.snapshot import ZERO, Vector
 
@@ -37,21 +38,6 @@ class Board(Protocol):
         ...
 
     def close(self) -> None: ...
-
-
-class Plant(Protocol):
-    """The robot in the field at its place."""
-
-    @property
-    def pose(self) -> Pose: ...
-    @property
-    def position(self) -> tuple[float, float]: ...
-    @property
-    def pivot(self) -> Pivot: ...
-    @property
-    def body_tilt(self) -> float: ...
-    def step(self, field: Vector, dt: float) -> None: ...
-    def place(self, pose: Pose) -> None: ...
 
 
 class World:

@@ -19,6 +19,7 @@ from server.catalogue.queries import next_cursor, number_of, place_at, places
 from server.catalogue.records import EVERY_RUN, RUNNING, Loose, Page, RunQuery, RunRecord, Totals
 from server.catalogue.rows import assign, record_of, row_of
 from server.catalogue.sessions import Sessions
+from server.catalogue.study_list import StudyList
 from server.catalogue.tables import SHOWN, RunRow, SettingsRow
 
 PAGE = 50
@@ -34,6 +35,7 @@ class Catalogue:
 
     def __init__(self, path: Path, opened: Opened) -> None:
         self._sessions = Sessions(path, opened)
+        self.studies = StudyList(self._sessions)
         self._added: deque[tuple[int, str]] = deque(maxlen=ADDED_KEPT)
 
     @property

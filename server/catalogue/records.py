@@ -111,3 +111,14 @@ class Totals:
     runs: int
     size: int
     pinned_size: int
+
+
+@dataclass(frozen=True, slots=True)
+class StudyRecord:
+    """One study as it is listed; its folder knows the rest. definition: in lab units.  created_at: aware, UTC."""
+
+    id: str
+    name: str
+    definition: dict[str, Any]
+    state: str
+    created_at: datetime

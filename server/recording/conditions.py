@@ -32,7 +32,6 @@ class Conditions:
     camera_model: CameraModel
     body_height: float
     workspace: float
-    study: str = ""
 
     @property
     def recording(self) -> RecordingSection:
@@ -61,7 +60,8 @@ def settings_json(run: Run, conditions: Conditions) -> dict[str, Any]:
         "simulated": conditions.simulated,
         "plant": simulation.plant if conditions.simulated else "",
         "seed": simulation.seed if conditions.simulated else None,
-        "study": conditions.study,
+        "study": run.request.study,
+        "study_run": run.request.study_run,
         "rig": rig,
         "rig_toml": rig_toml(rig),
         "camera": camera_json(conditions.camera_model),

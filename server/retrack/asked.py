@@ -142,7 +142,7 @@ class Asked:
         self._aside.pose = pose
         self._aside.done, self._aside.answer = Told(tick.command.pivot, tick.command.rate), None
         try:
-            walk.step(tick.time, gap, tick.pose, look.field, look.perception)
+            walk.step(tick.time, gap, tick.pose, look.field, look.perception.backlash.lead)
         except (ControllerFault, ValueError) as error:
             raise RetrackError(f"the run cannot be walked through again: {error}") from error
         return self._aside.answer

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from control.coils import PAPER_PAIRS, CoilSet, command_field, currents_for, field_per_ampere
 from control.model import PIVOT_A, Pose, wrap
 from control.registration import Registration
-from control.simulation.plant import build_plant
+from control.simulation.plants import PlantChoice, build_plant
 
 patient = settings(deadline=None)
 """What an example takes on a busy computer is no matter here."""
@@ -99,7 +99,7 @@ def heading_error(believed: Registration, true: Registration, x: float, y: float
     worst = 0.0
     for heading in np.linspace(0.0, 2.0 * math.pi, 12, endpoint=False):
         currents = currents_for(host.local_allocation(x, y), command_field(PIVOT_A, heading, 0.4, 0.01))
-        plant = build_plant("noslip", 0.01, Pose(x, y, heading))
+        plant = build_plant(PlantChoice("noslip"), 0.01, Pose(x, y, heading))
         sign = -1.0 if true.magnet_reversed else 1.0
         bx, by, bz = world.local_field(x, y, currents)
         for _ in range(200):

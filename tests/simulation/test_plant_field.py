@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from control.coils import command_field
 from control.model import PIVOT_A, PIVOT_B, Pose, wrap
-from control.simulation.plant import ALIGNMENT_RATE, REST_FIELD, SlipPlant, build_plant
+from control.simulation.plant import ALIGNMENT_RATE, REST_FIELD, SlipPlant
 from control.simulation.slip import NO_SLIP, SLIP_TABLE, SlipParameters
 
 MILLISECOND = 1e-3
@@ -137,13 +137,6 @@ def test_between_rows_the_table_is_linear_and_beyond_them_it_is_the_last_row():
 def test_a_table_without_rising_tilts_is_refused(rows):
     with pytest.raises(ValueError, match="rows by rising tilt"):
         SlipParameters(rows)
-
-
-def test_plants_are_built_by_name():
-    assert build_plant("slip", 0.01, START).parameters is SLIP_TABLE
-    assert build_plant("noslip", 0.01, START).parameters is NO_SLIP
-    with pytest.raises(ValueError, match="choose one of noslip, slip"):
-        build_plant("soap", 0.01, START)
 
 
 def test_a_step_takes_a_few_microseconds():

@@ -6,7 +6,7 @@ import pytest
 
 from control.coils import CoilSet, command_field, currents_for
 from control.model import PIVOT_A, PIVOT_B, Pivot, Pose
-from control.simulation.plant import build_plant
+from control.simulation.plants import PlantChoice, build_plant
 from control.simulation.world import LONGEST_ADVANCE, World
 from control.snapshot import ZERO, Vector
 
@@ -59,7 +59,7 @@ class ShortBoard(ScriptedBoard):
 
 
 def world_of(script: list[Vector], plant: str = "slip", start_time: float = 0.0) -> World:
-    return World(ScriptedBoard(script), build_plant(plant, 0.01, START, seed=2), COILS, start_time)
+    return World(ScriptedBoard(script), build_plant(PlantChoice(plant), 0.01, START, seed=2), COILS, start_time)
 
 
 def test_time_passes_in_whole_milliseconds():
@@ -88,7 +88,7 @@ def test_a_time_that_is_not_finite_is_refused(time):
 
 def test_the_board_is_asked_for_all_due_milliseconds_at_once():
     board = ScriptedBoard([])
-    world = World(board, build_plant("noslip", 0.01, START), COILS)
+    world = World(board, build_plant(PlantChoice("noslip"), 0.01, START), COILS)
     for frame in range(1, 7):
         world.advance_to(frame / 60.0)
     assert board.asked == [16, 17, 17, 16, 17, 17]
@@ -156,12 +156,12 @@ def test_a_nudged_robot_lies_where_it_was_put():
 
 
 def test_a_board_that_loses_time_is_an_error():
-    world = World(ShortBoard([]), build_plant("noslip", 0.01, START), COILS)
+    world = World(ShortBoard([]), build_plant(PlantChoice("noslip"), 0.01, START), COILS)
     with pytest.raises(ValueError, match="10 ms and gave 9"):
         world.advance_to(0.01)
 
 
 def test_closing_the_world_closes_the_board():
     board = ScriptedBoard([])
-    World(board, build_plant("noslip", 0.01, START), COILS).close()
+    World(board, build_plant(PlantChoice("noslip"), 0.01, START), COILS).close()
     assert board.closed

@@ -1,0 +1,24 @@
+"""What is wrong with a value that a file or a request gave, in words."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from pydantic import ValidationError
+
+
+def _nowhere(_: tuple[str | int, ...]) -> str:
+    return ""
+
+
+def in_words(error: ValidationError, place: Callable[[tuple[str | int, ...]], str] = _nowhere) -> str:
+    """One line for each wrong value: its name, what is wrong with it, what was given, and where `place` finds it."""
+    lines = []
+    for problem in error.errors(include_url=False):
+        where = ".".join(str(part) for part in problem["loc"]) or "the whole file"
+        is_one_value = problem["type"] not in ("missing", "extra_forbidden") and not isinstance(
+            problem["input"], dict
+        )
+        given = f" (given: {problem['input']!r})" if is_one_value else ""
+        lines.append(f"  {where}: {problem['msg']}{given}{place(problem['loc'])}")
+    return "\n".join(lines)

@@ -1,0 +1,85 @@
+/** One study: how far it is, what it does now, its figures, and what can be done with it. */
+import { useStore } from "../store.js";
+import { html, useEffect, useRef, useState } from "../view.js";
+import { filterBy, NO_FILTER } from "../runs/listing.js";
+import { exactly } from "../runs/words.js";
+import { compose } from "./composing.js";
+import { DeleteDialog } from "./delete.js";
+import { Figures } from "./figures.js";
+import { Bar, State } from "./list.js";
+import { closeStudy, resumeStudy, stopStudy, useStudies } from "./listing.js";
+import { onWords, progressWords, setText, withInterval } from "./words.js";
+import { showTab } from "../journal/tab.js";
+
+export function StudyPage({ id }) {
+  const { study, trouble, working } = useStudies((studies) => studies);
+  const title = useRef(null);
+  useEffect(() => void title.current?.focus({ preventScroll: true }), []);
+  return html`
+    <article class="study" aria-labelledby="study-title">
+      <header class="study-head">
+        <button class="quiet back" type="button" onClick=${closeStudy}>‹ All studies</button>
+        <h3 id="study-title" ref=${title} tabindex="-1">${study ? study.name || study.id : id}</h3>
+        ${study && html`<${State} study=${study} />`}
+      </header>
+      ${study ? html`<${Page} study=${study} trouble=${trouble} working=${working} />` : html`<p class="hint padded" role="status">${trouble || "Loading…"}</p>`}
+    </article>
+  `;
+}
+
+function Page({ study, trouble, working }) {
+  return html`
+    <div class="study-page">
+      <div class="study-standing">
+        <${Bar} study=${study} />
+        <p><span>${progressWords(study)}</span><span class="soft"> · ${onWords(study.on)}, begun ${exactly(study.created_at)}</span></p>
+        <p class="study-now" aria-live="polite">${study.current || study.reason}</p>
+        ${study.best && html`<p>Smallest ME so far: <b>${withInterval(study.best, 3)}</b> robot lengths at ${setText(study.best.values, study.axes)} (n = ${study.best.runs}).</p>`}
+        ${study.answer && html`<${Answer} study=${study} />`}
+      </div>
+      <${Buttons} study=${study} working=${working} />
+      <div class="outcome" aria-live="polite">${trouble && html`<p class="field-error">${trouble}</p>`}</div>
+      <${Figures} key=${study.id} study=${study} />
+    </div>
+  `;
+}
+
+/** What a search for the best has found. */
+function Answer({ study: { answer, axes } }) {
+  const predicted = withInterval({ mean: answer.predicted, low: answer.predicted_low, high: answer.predicted_high }, 3);
+  return html`<p>The search's answer: ${setText(answer.values, axes)}, predicted ME ${predicted}${answer.confirmed ? html`, confirmed by ${answer.runs} runs: <b>${withInterval(answer, 3)}</b>` : ", not confirmed yet"}.</p>`;
+}
+
+function Buttons({ study, working }) {
+  const [asking, ask] = useState(false);
+  const armed = useStore((state) => state.tick?.rig);
+  const running = study.state === "running";
+  const over = study.state === "finished";
+  const address = `/api/v1/studies/${encodeURIComponent(study.id)}`;
+  return html`
+    <div class="run-buttons">
+      ${running && html`<button class="next" type="button" disabled=${working !== ""} onClick=${() => stopStudy(study.id)}>Stop study</button>`}
+      ${!running && !over && html`<button class="next" type="button" disabled=${working !== ""} onClick=${() => resumeStudy(study.id)}>${study.state === "planned" ? "Start study" : "Resume study"}</button>`}
+      <${Away} href=${`${address}/report`} words="Report" there=${study.done > 0} opens />
+      <${Away} href=${`${address}/table.csv`} words="Table, CSV" there=${study.done > 0} />
+      <${Away} href=${`${address}/plot.png`} words="Figure, PNG" there=${study.done > 0} />
+      <${Away} href=${`${address}/report.zip`} words="Everything, ZIP" there=${study.done > 0} />
+      ${study.on === "rig" && html`<button type="button" onClick=${() => showRunsOf(study)}>Its runs</button>`}
+      <button type="button" onClick=${() => compose(study.definition)}>Use as a new study</button>
+      <button type="button" disabled=${running} title=${running ? "It goes on; stop it first." : ""} onClick=${() => ask(true)}>Delete…</button>
+    </div>
+    ${running && study.on === "rig" && armed && html`<p class="hint">It goes on by itself, also when this page is closed. STOP ends it; it can be resumed.</p>`}
+    ${asking && html`<${DeleteDialog} study=${study} close=${() => ask(false)} />`}
+  `;
+}
+
+/** A link that looks like a button; before there is anything behind it, a button that cannot be pressed. */
+function Away({ href, words, there, opens = false }) {
+  if (!there) return html`<button type="button" disabled title="No run has finished yet.">${words}</button>`;
+  return opens ? html`<a class="button" href=${href} target="_blank" rel="noopener">${words}</a>` : html`<a class="button" href=${href} download>${words}</a>`;
+}
+
+function showRunsOf(study) {
+  filterBy({ ...NO_FILTER, study: study.id });
+  showTab("runs");
+}
