@@ -25,8 +25,7 @@ class Backlash:
         if not abs(lag) <= LARGEST:
             return
         self._seen[direction] += 1
-        weight = max(FORGETTING, 1.0 / (self._seen[direction] + 1))
-        self._lag[direction] += weight * (lag - self._lag[direction])
+        self._lag[direction] = lag_after(self._lag[direction], self._seen[direction], lag)
 
     def lead(self, direction: float) -> float:
         """How far beyond the body's goal the field has to go, rad, signed."""
@@ -36,3 +35,13 @@ class Backlash:
     def half_width(self) -> float:
         """Half of the play between the two directions, rad."""
         return max(0.0, 0.5 * (self._lag[1] - self._lag[-1]))
+
+
+def lag_after(known: float, seen: int, lag: float) -> float:
+    """The mean lag (rad) with one more sighting of `lag`; seen: how many there are now."""
+    return known + max(FORGETTING, 1.0 / (seen + 1)) * (lag - known)
+
+
+def pull_after(pull: float, angle: float) -> float:
+    """How far the field has turned since it last reversed, rad, signed, once it has turned by `angle` more."""
+    return angle if angle * pull < 0.0 else pull + angle

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from control.backlash import ENGAGED_AFTER
+from control.backlash import ENGAGED_AFTER, pull_after
 from control.field import Field, Turn
 from control.gait_model import GaitModel
 from control.model import PIVOT_A, PIVOT_B, Expectation, Measurement, Pivot, Pose, body_tilt, swing
@@ -99,7 +99,7 @@ class Grip:
     def after(self, turn: Turn, half_play: float) -> Grip:
         """The grip once the field has made this turn."""
         slack = max(-half_play, min(half_play, self.slack + turn.angle))
-        pull = turn.angle if turn.angle * self.pull < 0.0 else self.pull + turn.angle
+        pull = pull_after(self.pull, turn.angle)
         follows = turn.angle + self.slack - slack
         return Grip(slack, pull, turn.pivot, follows + (self.turned if turn.pivot == self.pivot else 0.0))
 

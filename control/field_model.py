@@ -18,6 +18,9 @@ CLOCK_DRIFT = 0.008
 """How fast the smallest seen transit time is forgotten, s/s: an UNO's processor runs on a ceramic resonator, which is
 off by up to 0.5 %."""
 
+BEYOND_ZERO = 1e-12
+"""Elevation at which a ramp presses on the other end, rad: as good as none, and of the right sign."""
+
 DISAGREEMENT = math.radians(2.0)
 """Mirror and board may differ by this: 10 ms of transit at 2 rad/s is 1.1 degrees, rad."""
 
@@ -83,27 +86,18 @@ class FieldModel(Field):
             return time
         if self._elevation != self._target_elevation:
             return self._raise_or_lower(time)
-        left = self._goal - self._heading
-        if left * self._rate <= 0.0:
-            return time
-        arrival = self._time + left / self._rate
-        if arrival <= time:
-            self._heading = self._goal
-            return max(arrival, math.nextafter(self._time, math.inf))
-        self._heading += self._rate * (time - self._time)
-        return time
+        end, self._heading = turned_until(self._time, self._heading, self._goal, self._rate, time)
+        return self._later(end)
 
     def _raise_or_lower(self, time: float) -> float:
         """The elevation ramp, in two pieces where it passes zero; the heading is held meanwhile."""
         speed = 2.0 * abs(self._target_elevation) / self._ramp if self._target_elevation else math.inf
-        crosses = self._elevation * self._target_elevation < 0.0
-        end = math.copysign(1e-12, self._target_elevation) if crosses else self._target_elevation
-        arrival = self._time + abs(end - self._elevation) / speed
-        if arrival <= time:
-            self._elevation = end
-            return max(arrival, math.nextafter(self._time, math.inf))
-        self._elevation += math.copysign(speed * (time - self._time), end - self._elevation)
-        return time
+        end, self._elevation = raised_until(self._time, self._elevation, self._target_elevation, speed, time)
+        return self._later(end)
+
+    def _later(self, time: float) -> float:
+        """Two corners are never at the same time, between which nothing could be told."""
+        return max(time, math.nextafter(self._time, math.inf))
 
     def synchronise(self, board_time: float, received_at: float, heading: float) -> None:
         """Compare with the board's own heading (rad, wrapped) at its own time (s); follow it where they part.
@@ -134,3 +128,28 @@ class FieldModel(Field):
         """The board's time begins again: it has restarted, or its count of milliseconds has gone round (49 days)."""
         self._offset = math.inf
         self.reported_at = -math.inf
+
+
+def turned_until(time: float, heading: float, goal: float, rate: float, until: float) -> tuple[float, float]:
+    """The heading (rad) after turning to the goal from `time` on, and when that ends: `until` (s) at the latest."""
+    left = goal - heading
+    if left * rate <= 0.0:
+        return until, heading
+    arrival = time + left / rate
+    if arrival <= until:
+        return arrival, goal
+    return until, heading + rate * (until - time)
+
+
+def raised_until(
+    time: float, elevation: float, target: float, speed: float, until: float
+) -> tuple[float, float]:
+    """The elevation (rad) after one straight piece of its ramp at `speed` (rad/s), and when that ends, s.
+
+    A piece ends just beyond zero, where the other end is taken, on the target, or at `until`.
+    """
+    end = math.copysign(BEYOND_ZERO, target) if elevation * target < 0.0 else target
+    arrival = time + abs(end - elevation) / speed
+    if arrival <= until:
+        return arrival, end
+    return until, elevation + math.copysign(speed * (until - time), end - elevation)

@@ -79,11 +79,11 @@ class Sweep:
 
     def remaining(self, heading: float, direction: float) -> float:
         """What is left of the sweep when turning towards `direction` (a sign), rad, >= 0."""
-        return max(0.0, self.angle - math.copysign(1.0, direction) * self.turned(heading))
+        return remaining_turn(self.angle, self.turned(heading), direction)
 
     def goal(self, direction: float) -> float:
         """The body's heading at which the sweep ends when turning towards `direction`, rad."""
-        return self.start + math.copysign(self.angle, direction)
+        return sweep_end(self.start, self.angle, direction)
 
     def complete(self, heading: float) -> None:
         """The sweep has ended at `heading`: the next one starts there."""
@@ -108,6 +108,16 @@ class Sweep:
     def _count(self, steps: int = 0, sweeps: int = 0, reversals: int = 0) -> None:
         c = self.counts
         self.counts = Counts(c.steps + steps, c.sweeps + sweeps, c.reversals + reversals)
+
+
+def remaining_turn(angle: float, turned: float, direction: float) -> float:
+    """What is left of a sweep of `angle` when turning towards `direction` (a sign), rad, >= 0."""
+    return max(0.0, angle - math.copysign(1.0, direction) * turned)
+
+
+def sweep_end(start: float, angle: float, direction: float) -> float:
+    """The heading at which a sweep of `angle` from `start` ends when turning towards `direction`, rad."""
+    return start + math.copysign(angle, direction)
 
 
 def advance_of_sweep(sweep: float, length: float) -> float:

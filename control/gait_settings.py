@@ -1,12 +1,13 @@
-"""The gait in the lab's units, as REST, rig-side files and studies give it; and what every such model is."""
+"""The gait in the lab's units, as REST, the command line and studies give it: the one place where it becomes SI."""
 
 from __future__ import annotations
 
 import math
 from typing import Any, Literal, cast
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
+from control.edge import Edge
 from control.gait import Gait, TimeLaw
 from control.trajectories.fields import SLOWEST_MM_S
 
@@ -14,12 +15,6 @@ MM = 1e-3
 MT = 1e-3
 
 TimeLawName = Literal["path_step", "constant_speed", "trapezoidal", "wait"]
-
-
-class Edge(BaseModel):
-    """Strict: unknown fields, NaN, infinity and numbers in quotes are refused."""
-
-    model_config = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False, frozen=True)
 
 
 def angle(default: float, **limits: Any) -> Any:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from control.gait import Counts
 from control.model import Pose
@@ -24,6 +25,35 @@ class Metrics:
     steps: int
     sweeps: int
     reversals: int
+
+
+class Sums(NamedTuple):
+    """Over the ticks of a run; errors and the way travelled in m."""
+
+    ticks: int
+    errors: float
+    squares: float
+    largest: float
+    last: float
+    travelled: float
+
+    def metrics(self, length: float, counts: Counts, duration: float) -> Metrics:
+        """length: between the pivots, m.  duration: s."""
+        ticks = max(self.ticks, 1)
+        mean_error = self.errors / ticks
+        return Metrics(
+            mean_error=mean_error,
+            normalized_mean_error=mean_error / length,
+            rms_error=math.sqrt(self.squares / ticks),
+            max_error=self.largest,
+            end_error=self.last,
+            travelled=self.travelled,
+            duration=duration,
+            ticks=self.ticks,
+            steps=counts.steps,
+            sweeps=counts.sweeps,
+            reversals=counts.reversals,
+        )
 
 
 class MetricsTally:
@@ -52,17 +82,7 @@ class MetricsTally:
         return self._sum / self._ticks if self._ticks else 0.0
 
     def metrics(self, counts: Counts, duration: float) -> Metrics:
-        ticks = max(self._ticks, 1)
-        return Metrics(
-            mean_error=self.mean_error,
-            normalized_mean_error=self.mean_error / self._length,
-            rms_error=math.sqrt(self._sum_of_squares / ticks),
-            max_error=self._largest,
-            end_error=self._last,
-            travelled=self._travelled,
-            duration=duration,
-            ticks=self._ticks,
-            steps=counts.steps,
-            sweeps=counts.sweeps,
-            reversals=counts.reversals,
+        sums = Sums(
+            self._ticks, self._sum, self._sum_of_squares, self._largest, self._last, self._travelled
         )
+        return sums.metrics(self._length, counts, duration)

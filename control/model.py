@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import Literal
+from typing import Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +21,17 @@ Pivot = Literal[1, -1]
 PIVOT_A: Pivot = 1
 PIVOT_B: Pivot = -1
 TURN = 2.0 * math.pi
+
+
+class Place(Protocol):
+    """What the formulas ask of a pose, which a compiled walk keeps in another form: m, m, rad."""
+
+    @property
+    def x(self) -> float: ...
+    @property
+    def y(self) -> float: ...
+    @property
+    def heading(self) -> float: ...
 
 
 def wrap(angle: float) -> float:
@@ -49,7 +60,7 @@ class Pose:
         return math.hypot(self.x - x, self.y - y)
 
 
-def pivot_point(pose: Pose, pivot: Pivot, length: float) -> tuple[float, float]:
+def pivot_point(pose: Place, pivot: Pivot, length: float) -> tuple[float, float]:
     """Where end A (pivot +1) or B (pivot -1) stands, m; `length` is the distance between the ends, m."""
     half = 0.5 * length * pivot
     return pose.x - half * math.sin(pose.heading), pose.y + half * math.cos(pose.heading)

@@ -35,10 +35,12 @@ from server.api import (
     selection,
     simulated_board,
     state,
+    studies,
     telemetry,
     trajectories,
     vision,
 )
+from server.api.study_json import StudyJson
 from server.api.ticks import TickText
 from server.calibration.camera import CameraCalibration
 from server.calibration.runs import CalibrationRuns
@@ -49,9 +51,11 @@ from server.fresh_files import ALWAYS_ASK, FreshFiles
 from server.pictures import Pictures
 from server.replay.sessions import ReplaySessions
 from server.retrack.desk import RetrackDesk
+from server.rig_life import ENDED
 from server.scene.feed import SceneFeed
 from server.scene.live import LiveView
 from server.scene.routes import add_scene_routes
+from server.studies.desk import StudyDesk
 from server.upkeep import Upkeep
 
 if TYPE_CHECKING:
@@ -85,6 +89,7 @@ ROOMS = (
     again,
     retrack,
     exports,
+    studies,
     camera,
     cameras,
     calibration,
@@ -126,6 +131,8 @@ def create_app(
     app.state.replays = ReplaySessions()
     app.state.workshop = Workshop()
     app.state.retracks = RetrackDesk()
+    app.state.studies = StudyDesk(rig, archive)
+    app.state.study_json = StudyJson(app.state.studies)
     app.add_middleware(Door, hosts=hosts)
     problems.install(app)
     add_routes(app)
@@ -151,7 +158,7 @@ async def lifespan(app: FastAPI) -> AsyncIterator[None]:
         yield
     finally:
         try:
-            await rig.stop()
+            await end_rig(app)
         finally:
             written = asyncio.create_task(asyncio.to_thread(archive.recorder.close), name="last recording")
             try:
@@ -166,6 +173,16 @@ async def lifespan(app: FastAPI) -> AsyncIterator[None]:
             finally:
                 await written
                 await asyncio.to_thread(archive.close)
+
+
+async def end_rig(app: FastAPI) -> None:
+    """Zero first; a campaign on the rig ends while there still is one."""
+    rig: Rig = app.state.rig
+    rig.stop_coils("ended", ENDED)
+    try:
+        await app.state.studies.close()
+    finally:
+        await rig.stop()
 
 
 async def start_scene(scene: SceneFeed) -> None:

@@ -22,6 +22,7 @@ from server.commands.outcome import (
 )
 from server.commands.plugin_option import PluginOption, load_plugins
 from server.commands.reproduce import reproduce
+from server.commands.study import study
 from server.commands.walk import run
 from server.data_folder import data_folder
 from server.environment import check_environment
@@ -39,6 +40,7 @@ app.add_typer(firmware.app, name="firmware")
 app.command()(doctor)
 app.command()(reproduce)
 app.command()(run)
+app.command()(study)
 
 
 def main() -> None:
@@ -70,6 +72,16 @@ def runs(context: typer.Context) -> None:
     from server.commands.runs import app as recorded  # as above
 
     recorded(context.args, prog_name=context.command_path)
+
+
+@app.command(
+    add_help_option=False, context_settings={"ignore_unknown_options": True, "allow_extra_args": True}
+)
+def studies(context: typer.Context) -> None:
+    """Look at studies, go on with one, write its report, take its table."""
+    from server.commands.studies import app as begun  # as above
+
+    begun(context.args, prog_name=context.command_path)
 
 
 @app.command()

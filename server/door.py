@@ -263,7 +263,7 @@ def content_policy(path: str, host: str) -> str:
             f"connect-src 'self' {sockets} data: blob:; worker-src 'self' blob: data:; "
             "form-action 'none'; base-uri 'none'; frame-ancestors 'self'"
         )
-    style = "'self' 'unsafe-inline'" if path == "/docs" else "'self'"
+    style = "'self' 'unsafe-inline'" if path == "/docs" or path.endswith("/report") else "'self'"
     return (
         f"default-src 'self'; connect-src 'self' {sockets}; img-src 'self' blob: data:; style-src {style}; "
         "object-src 'none'; base-uri 'none'; form-action 'self'; frame-ancestors 'self'"

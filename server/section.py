@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Annotated
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field
+
+from control.wrong_values import in_words
+
+__all__ = ["NOT_MEASURED", "Positive", "Section", "in_words"]
 
 Positive = Annotated[float, Field(gt=0.0)]
 NOT_MEASURED = "not measured"
@@ -14,20 +17,3 @@ NOT_MEASURED = "not measured"
 
 class Section(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
-
-
-def _nowhere(_: tuple[str | int, ...]) -> str:
-    return ""
-
-
-def in_words(error: ValidationError, place: Callable[[tuple[str | int, ...]], str] = _nowhere) -> str:
-    """One line for each wrong value: its name, what is wrong with it, what was given, and where `place` finds it."""
-    lines = []
-    for problem in error.errors(include_url=False):
-        where = ".".join(str(part) for part in problem["loc"]) or "the whole file"
-        is_one_value = problem["type"] not in ("missing", "extra_forbidden") and not isinstance(
-            problem["input"], dict
-        )
-        given = f" (given: {problem['input']!r})" if is_one_value else ""
-        lines.append(f"  {where}: {problem['msg']}{given}{place(problem['loc'])}")
-    return "\n".join(lines)

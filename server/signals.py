@@ -49,3 +49,25 @@ def coils_stop_first(stop: Callable[[], None]) -> Iterator[None]:
 
     with handled({**dict.fromkeys(ENDING, end), ESTOP: estop}):
         yield
+
+
+class ProgramEnds(KeyboardInterrupt):
+    """Somebody else than the operator ends the program, politely: a computer that shuts down, a closed terminal."""
+
+
+@contextmanager
+def interrupted_once() -> Iterator[None]:
+    """The first signal that ends the program is an interruption, by Ctrl-C or `ProgramEnds`; later ones are nothing.
+
+    So what is being closed because of the first one is closed to the end.
+    """
+    is_ending = False
+
+    def end(number: int, _frame: FrameType | None) -> None:
+        nonlocal is_ending
+        if not is_ending:
+            is_ending = True
+            raise KeyboardInterrupt if number == signal.SIGINT else ProgramEnds
+
+    with handled(dict.fromkeys(ENDING, end)):
+        yield

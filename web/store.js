@@ -37,6 +37,12 @@ let state = {
   /** Runs as they are listed (runs/listing.js), null before the first answer, and the one whose details are open. */
   listing: null,
   inspected: null,
+  /** Studies as they are listed, with the open one (studies/listing.js); the draft of a new one (studies/composing.js). */
+  studies: null,
+  composing: null,
+  plants: [],
+  /** Which tab below the live part is open. */
+  tab: "runs",
   events: [],
 };
 

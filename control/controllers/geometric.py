@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import math
+
 from pydantic import Field
 
 from control.controllers.controller import Decision, Situation, controllers
-from control.model import PIVOT_A, PIVOT_B, Pivot, pivot_point
+from control.model import PIVOT_A, PIVOT_B, Pivot, Place, pivot_point
 from control.registry import Parameters
 
+Point = tuple[float, float]
 PER_CM_SECOND = 100.0
 """1/(cm s) in 1/(m s)."""
 
@@ -33,23 +36,32 @@ class Geometric:
     Parameters = GeometricParameters
 
     def __init__(self, parameters: GeometricParameters) -> None:
-        self._gain = parameters.gain * PER_CM_SECOND
+        self.gain = parameters.gain * PER_CM_SECOND
+        """k, 1/(m s)."""
 
     def step(self, situation: Situation) -> Decision:
         """sigma = sign(d_B - d_A), chosen when a sweep is complete; omega = k sigma e_n."""
-        pivot = self._nearest(situation) if situation.may_switch else situation.pivot
-        error = situation.pose.distance_to(*situation.reference)
-        return Decision(pivot, self._gain * pivot * error)
-
-    @staticmethod
-    def _nearest(situation: Situation) -> Pivot:
-        distance_a, distance_b = (_distance(situation, pivot) for pivot in (PIVOT_A, PIVOT_B))
-        if distance_a == distance_b:
-            return situation.pivot
-        return PIVOT_A if distance_a < distance_b else PIVOT_B
+        pose, reference, pivot = situation.pose, situation.reference, situation.pivot
+        if situation.may_switch:
+            pivot = nearest_pivot(pose, reference, pivot, situation.length)
+        return Decision(pivot, swing_rate(self.gain, pivot, pose, reference))
 
 
-def _distance(situation: Situation, pivot: Pivot) -> float:
-    x, y = pivot_point(situation.pose, pivot, situation.length)
-    desired_x, desired_y = situation.reference
-    return ((x - desired_x) ** 2 + (y - desired_y) ** 2) ** 0.5
+def nearest_pivot(pose: Place, desired: Point, pivot: Pivot, length: float) -> Pivot:
+    """sigma = sign(d_B - d_A); `pivot`, the one in use, when both are as near. desired: m.  length: m."""
+    distance_a = apart(pivot_point(pose, PIVOT_A, length), desired)
+    distance_b = apart(pivot_point(pose, PIVOT_B, length), desired)
+    if distance_a == distance_b:
+        return pivot
+    return PIVOT_A if distance_a < distance_b else PIVOT_B
+
+
+def swing_rate(gain: float, pivot: Pivot, pose: Place, desired: Point) -> float:
+    """omega = k sigma e_n, rad/s. gain: 1/(m s).  desired: m."""
+    return gain * pivot * apart((pose.x, pose.y), desired)
+
+
+def apart(place: Point, other: Point) -> float:
+    """Distance of two points, m."""
+    x, y = place[0] - other[0], place[1] - other[1]
+    return math.sqrt(x * x + y * y)

@@ -18,7 +18,7 @@ from pydantic import Field
 from control.controllers.controller import Decision, Situation, controllers
 from control.controllers.heading import HeadingParameters, WantedHeading
 from control.gait import Gait
-from control.model import PIVOT_A, PIVOT_B, Pivot, wrap
+from control.model import opposite, wrap
 
 BASE_LOOK_AHEAD = 0.33
 LOOK_AHEAD_PER_SWEEP = 0.955
@@ -64,32 +64,46 @@ class Cost:
 
     def value(self, rate: float, sigma: float) -> float:
         """J, m^2."""
-        error_x, error_y, error_heading, _, _ = self._errors(rate, sigma)
-        return 0.5 * (error_x**2 + error_y**2 + self.weight * error_heading**2)
+        return cost_value(self, rate, sigma)
 
     def by_rate(self, rate: float, sigma: float) -> float:
-        """dJ/d omega, m^2 s: dc/d omega = (L/2) sigma tau [cos theta', sin theta']."""
-        error_x, error_y, error_heading, sine, cosine = self._errors(rate, sigma)
-        along = self.half * sigma * (error_x * cosine + error_y * sine)
-        return self.look_ahead * (along + self.weight * error_heading)
+        """dJ/d omega, m^2 s."""
+        return cost_by_rate(self, rate, sigma)
 
-    def distance_from_pivot(self, sigma: float) -> float:
-        """Of the desired point, m."""
-        half = self.half * sigma
-        x, y = self.x - half * math.sin(self.heading), self.y + half * math.cos(self.heading)
-        return math.hypot(x - self.desired_x, y - self.desired_y)
 
-    def _errors(self, rate: float, sigma: float) -> tuple[float, float, float, float, float]:
-        after = self.heading + rate * self.look_ahead
-        sine, cosine = math.sin(after), math.cos(after)
-        half = self.half * sigma
-        return (
-            self.x + half * (sine - math.sin(self.heading)) - self.desired_x,
-            self.y - half * (cosine - math.cos(self.heading)) - self.desired_y,
-            wrap(after - self.wanted) if self.weight else 0.0,
-            sine,
-            cosine,
-        )
+def cost_value(cost: Cost, rate: float, sigma: float) -> float:
+    """J, m^2."""
+    error_x, error_y, error_heading, _, _ = cost_errors(cost, rate, sigma)
+    return 0.5 * (error_x * error_x + error_y * error_y + cost.weight * (error_heading * error_heading))
+
+
+def cost_by_rate(cost: Cost, rate: float, sigma: float) -> float:
+    """dJ/d omega, m^2 s: dc/d omega = (L/2) sigma tau [cos theta', sin theta']."""
+    error_x, error_y, error_heading, sine, cosine = cost_errors(cost, rate, sigma)
+    along = cost.half * sigma * (error_x * cosine + error_y * sine)
+    return cost.look_ahead * (along + cost.weight * error_heading)
+
+
+def cost_errors(cost: Cost, rate: float, sigma: float) -> tuple[float, float, float, float, float]:
+    """Errors of place (m, m) and heading (rad) after the look-ahead, and sine and cosine of the heading then."""
+    after = cost.heading + rate * cost.look_ahead
+    sine, cosine = math.sin(after), math.cos(after)
+    half = cost.half * sigma
+    return (
+        cost.x + half * (sine - math.sin(cost.heading)) - cost.desired_x,
+        cost.y - half * (cosine - math.cos(cost.heading)) - cost.desired_y,
+        wrap(after - cost.wanted) if cost.weight else 0.0,
+        sine,
+        cosine,
+    )
+
+
+def distance_from_pivot(cost: Cost, sigma: float) -> float:
+    """Of the desired point, m."""
+    half = cost.half * sigma
+    x = cost.x - half * math.sin(cost.heading) - cost.desired_x
+    y = cost.y + half * math.cos(cost.heading) - cost.desired_y
+    return math.sqrt(x * x + y * y)
 
 
 def descend(cost: Cost, sigma: float, rate: float, max_rate: float) -> float:
@@ -100,14 +114,36 @@ def descend(cost: Cost, sigma: float, rate: float, max_rate: float) -> float:
     never climbs and converges like Newton's.
     """
     tau = cost.look_ahead
-    scale = 1.0 / ((cost.half * cost.distance_from_pivot(sigma) + cost.weight + TINY) * tau * tau)
+    scale = 1.0 / ((cost.half * distance_from_pivot(cost, sigma) + cost.weight + TINY) * tau * tau)
     largest = LARGEST_TURN / tau
     for _ in range(ITERATIONS):
-        step = max(-largest, min(largest, scale * cost.by_rate(rate, sigma)))
-        before, rate = rate, max(-max_rate, min(max_rate, rate - step))
+        step = max(-largest, min(largest, scale * cost_by_rate(cost, rate, sigma)))
+        before = rate
+        rate = max(-max_rate, min(max_rate, rate - step))
         if abs(rate - before) < CONVERGED:
             break
     return rate
+
+
+def lowest_on(cost: Cost, sigma: float, max_rate: float) -> tuple[float, float]:
+    """The lowest J (m^2) about one pivot, from a start on each way round, and its rate (rad/s)."""
+    first = FIRST_TURN / cost.look_ahead
+    rate, other = descend(cost, sigma, first, max_rate), descend(cost, sigma, -first, max_rate)
+    value, other_value = cost_value(cost, rate, sigma), cost_value(cost, other, sigma)
+    if other_value < value or (other_value == value and other < rate):
+        return other_value, other
+    return value, rate
+
+
+def gone_on(rate: float, turned: float, sweep: float, tau: float, max_rate: float) -> float:
+    """Complete the sweep over the look-ahead, the way it has begun: only then may the other pivot be taken."""
+    return math.copysign(min(sweep / tau, max_rate), turned or rate)
+
+
+def is_at_rest_too_far(cost: Cost, lowest: float, rate: float, sweep: float) -> bool:
+    """No turn about this pivot comes nearer, yet the robot is not there: the long axis points at the goal."""
+    short = SHORT_OF_GOAL * (2.0 * cost.half)
+    return lowest > 0.5 * (short * short) and abs(rate * cost.look_ahead) < sweep
 
 
 @controllers.register
@@ -124,24 +160,29 @@ class Gradient:
         self._weight = parameters.effective_heading_weight
         self._wanted = WantedHeading(parameters)
 
+    @property
+    def regulates_heading(self) -> bool:
+        return bool(self._weight)
+
+    def look_ahead(self, gait: Gait) -> float:
+        """tau, s."""
+        return look_ahead(gait) if self._look_ahead is None else self._look_ahead
+
     def step(self, situation: Situation) -> Decision:
         """sigma may change only when a sweep is complete."""
-        cost = self._cost(situation)
-        limit = situation.gait.max_rate
-        pivots = (PIVOT_A, PIVOT_B) if situation.may_switch else (situation.pivot,)
-        first = FIRST_TURN / cost.look_ahead
-        ends: list[tuple[float, Pivot, float]] = []
-        for pivot in pivots:
-            for start in (first, -first):
-                rate = descend(cost, pivot, start, limit)
-                ends.append((cost.value(rate, pivot), pivot, rate))
-        lowest, pivot, rate = min(ends)
-        if self._is_at_rest_too_far(situation, lowest, rate * cost.look_ahead):
-            rate = _go_on(situation, rate, cost.look_ahead)
+        cost, gait, pivot = self._cost(situation), situation.gait, situation.pivot
+        lowest, rate = lowest_on(cost, pivot, gait.max_rate)
+        if situation.may_switch:
+            other = opposite(pivot)
+            end = lowest_on(cost, other, gait.max_rate)
+            if end[0] < lowest or (end[0] == lowest and other < pivot):
+                pivot, (lowest, rate) = other, end
+        if is_at_rest_too_far(cost, lowest, rate, gait.sweep):
+            rate = gone_on(rate, situation.turned, gait.sweep, cost.look_ahead, gait.max_rate)
         return Decision(pivot, rate)
 
     def _cost(self, situation: Situation) -> Cost:
-        tau = look_ahead(situation.gait) if self._look_ahead is None else self._look_ahead
+        tau = self.look_ahead(situation.gait)
         pose = situation.pose
         x, y = situation.desired(tau)
         return Cost(
@@ -156,18 +197,7 @@ class Gradient:
             weight=self._weight * situation.length**2,
         )
 
-    @staticmethod
-    def _is_at_rest_too_far(situation: Situation, lowest: float, turn: float) -> bool:
-        """No turn about this pivot comes nearer, yet the robot is not there: the long axis points at the goal."""
-        far = 0.5 * (SHORT_OF_GOAL * situation.length) ** 2
-        return lowest > far and abs(turn) < situation.gait.sweep
-
 
 def look_ahead(gait: Gait) -> float:
     """The default look-ahead for a sweep, s."""
     return BASE_LOOK_AHEAD + LOOK_AHEAD_PER_SWEEP * gait.sweep
-
-
-def _go_on(situation: Situation, rate: float, tau: float) -> float:
-    """Complete the sweep over the look-ahead, the way it has begun: only then may the other pivot be taken."""
-    return math.copysign(min(situation.gait.sweep / tau, situation.gait.max_rate), situation.turned or rate)

@@ -11,9 +11,9 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from statistics import fmean, stdev
 
-from control.model import PIVOT_A, Pivot, Pose, opposite, pivot_point, wrap
+from control.coils import command_field
+from control.model import PIVOT_A, PIVOT_B, Pivot, Pose, opposite, pivot_point, wrap
 from control.simulation.plants import Plant, PlantChoice, build_plant
-from control.snapshot import Vector
 
 TICK = 1e-3
 """The board's, s."""
@@ -23,6 +23,8 @@ TAKING_UP = 0.3
 """In which the field rises at first, s; the board's own."""
 UNCOUNTED = 2
 """First switches, while the robot finds into its stride."""
+
+Point = tuple[float, float]
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,12 +40,17 @@ class Stride:
 
 @dataclass(frozen=True, slots=True)
 class Switch:
-    """One pivot switch. out: how far the new pivot landed from its no-slip place, along the body away from its
-    centre, m.  forward: the same in the walking direction, m.  lag: of the body behind the field at the sweep's end,
-    rad, positive when behind.  tilt: of the raised end before the switch, rad."""
+    """One sweep and the switch after it.
+
+    out, forward: how far the new pivot landed from where it would be had the old one stood still since its own
+    landing, along the body away from its centre and in the walking direction, m.  hop: of `out`, what came during
+    the switch itself, m.  lag: of the body behind the turning field at the sweep's end, rad.  tilt: of the raised
+    end before the switch, rad.
+    """
 
     out: float
     forward: float
+    hop: float
     lag: float
     tilt: float
 
@@ -60,20 +67,24 @@ class Spread:
 
 @dataclass(frozen=True, slots=True)
 class SwitchFigures:
-    """Of all switches of a survey. play: free play between field and body, full width, rad.  out, forward: m.
+    """Of all switches of a survey. play: free play between field and body, full width, rad.  out, forward, hop: m.
 
-    advance: of the centre along the walk per switch, as a share of what a robot that does not slip would do.
+    displacement: sqrt(out^2 + forward^2), m.  advance: of the centre along the walk, as a share of what a robot that
+    does not slip would do.
     """
 
     play: Spread
     out: Spread
     forward: Spread
+    hop: Spread
     displacement: Spread
     tilt: Spread
     advance: float
 
 
-def survey(choice: PlantChoice, length: float, stride: Stride, switches: int, seeds: Sequence[int]) -> SwitchFigures:
+def survey(
+    choice: PlantChoice, length: float, stride: Stride, switches: int, seeds: Sequence[int]
+) -> SwitchFigures:
     """Walk `switches` switches with each of the seeds. length: between the pivots, m."""
     seen: list[Switch] = []
     advances = []
@@ -86,6 +97,7 @@ def survey(choice: PlantChoice, length: float, stride: Stride, switches: int, se
         play=Spread.of([2.0 * switch.lag for switch in seen]),
         out=Spread.of([switch.out for switch in seen]),
         forward=Spread.of([switch.forward for switch in seen]),
+        hop=Spread.of([switch.hop for switch in seen]),
         displacement=Spread.of([math.hypot(switch.out, switch.forward) for switch in seen]),
         tilt=Spread.of([switch.tilt for switch in seen]),
         advance=fmean(advances),
@@ -102,6 +114,8 @@ class OpenLoopWalk:
         self.pivot: Pivot = PIVOT_A
         self.heading = 0.0
         self.advance_share = math.nan
+        self._lag = math.nan
+        self._landed: Point = (math.nan, math.nan)
 
     def begin(self) -> None:
         """Take the robot up, and make the first half sweep."""
@@ -109,39 +123,39 @@ class OpenLoopWalk:
         for tick in range(ticks):
             self._hold(self._elevation(self.pivot), (tick + 1) / ticks)
         self._rest()
+        self._landed = pivot_point(self.plant.pose, self.pivot, self.length)
         self._turn_to(0.5 * self.stride.sweep)
         for _ in range(UNCOUNTED):
             self._next()
 
     def switches(self, count: int) -> Iterator[Switch]:
         """The next switches, each followed by the sweep to the other side."""
-        start, heading = self.plant.position, self.plant.pose.heading
+        start = self.plant.position
         for _ in range(count):
             yield self._next()
         moved = math.hypot(self.plant.position[0] - start[0], self.plant.position[1] - start[1])
         # Without slip the centre goes L sin(sweep / 2) with each sweep, in the direction in which it faces midway.
         ideal = count * self.length * math.sin(0.5 * self.stride.sweep)
         self.advance_share = moved / ideal
-        del heading
 
     def _next(self) -> Switch:
-        before, tilt = self.plant.pose, self.plant.body_tilt
-        # Forward about A the heading grows, about B it falls: the walk has just come to that side.
-        lag = self.pivot * wrap(self.heading - before.heading)
+        before, tilt, lag = self.plant.pose, self.plant.body_tilt, self._lag
+        slid = self._moved(self._landed, pivot_point(before, self.pivot, self.length), before.heading)
         self._switch()
-        self._rest()
-        switch = self._seen(before, lag, tilt)
-        self._turn_to(0.5 * self.stride.sweep * self.pivot)
-        return switch
-
-    def _seen(self, before: Pose, lag: float, tilt: float) -> Switch:
         planned = pivot_point(before, self.pivot, self.length)
-        landed = pivot_point(self.plant.pose, self.pivot, self.length)
-        dx, dy = landed[0] - planned[0], landed[1] - planned[1]
-        cosine, sine = math.cos(before.heading), math.sin(before.heading)
-        return Switch(
-            out=self.pivot * (cosine * dy - sine * dx), forward=cosine * dx + sine * dy, lag=lag, tilt=tilt
-        )
+        self._rest()
+        self._landed = pivot_point(self.plant.pose, self.pivot, self.length)
+        along, forward = self._moved(planned, self._landed, before.heading)
+        hop, slid_out = self.pivot * along, self.pivot * slid[0]
+        self._turn_to(0.5 * self.stride.sweep * self.pivot)
+        return Switch(hop + slid_out, forward + slid[1], hop, lag, tilt)
+
+    @staticmethod
+    def _moved(start: Point, end: Point, heading: float) -> Point:
+        """From `start` to `end` (m): towards end A of a body with this heading, and forward."""
+        dx, dy = end[0] - start[0], end[1] - start[1]
+        cosine, sine = math.cos(heading), math.sin(heading)
+        return cosine * dy - sine * dx, cosine * dx + sine * dy
 
     def _switch(self) -> None:
         before, self.pivot = self._elevation(self.pivot), opposite(self.pivot)
@@ -155,6 +169,8 @@ class OpenLoopWalk:
         for tick in range(ticks):
             self.heading = start + turn * (tick + 1) / ticks
             self._hold(self._elevation(self.pivot))
+        # Taken while the field still turns: friction creeps, so a body at rest comes after it.
+        self._lag = math.copysign(1.0, turn) * wrap(self.heading - self.plant.pose.heading)
         self._rest()
 
     def _rest(self) -> None:
@@ -166,13 +182,9 @@ class OpenLoopWalk:
         return -pivot * self.stride.tilt
 
     def _hold(self, elevation: float, share: float = 1.0) -> None:
-        self.plant.step(_field(self.heading, elevation, share * self.stride.field), TICK)
+        # Seen from end B an elevation is the tilt that `command_field` wants, of either sign.
+        self.plant.step(command_field(PIVOT_B, self.heading, elevation, share * self.stride.field), TICK)
 
 
 def _ticks(seconds: float) -> int:
     return max(1, round(seconds / TICK))
-
-
-def _field(heading: float, elevation: float, strength: float) -> Vector:
-    flat = strength * math.cos(elevation)
-    return -flat * math.sin(heading), flat * math.cos(heading), strength * math.sin(elevation)

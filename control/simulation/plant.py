@@ -13,7 +13,7 @@ import math
 import random
 from dataclasses import dataclass
 
-from control.model import PIVOT_A, PIVOT_B, TURN, Pivot, Pose, pivot_point
+from control.model import PIVOT_A, PIVOT_B, Pivot, Pose, pivot_point, wrap
 from control.simulation.slip import Slip, SlipParameters
 from control.snapshot import Vector
 
@@ -109,47 +109,39 @@ class SlipPlant:
             return
         self._horizontal = horizontal
         self._vertical = abs(bz)
-        elevation = math.atan2(bz, horizontal)
+        # The magnet's north is at end A, a quarter turn left of the walking direction.
+        self._obey(math.atan2(-bx, by), math.atan2(bz, horizontal), dt)
+
+    def step_towards(self, heading: float, elevation: float, strength: float, dt: float) -> None:
+        """`step` in a field given by its direction (rad, the robot's heading and elevation) and strength (T)."""
+        horizontal = strength * math.cos(elevation)
+        if not (REST_FIELD <= horizontal < math.inf and math.isfinite(heading)):
+            self._rest()
+            return
+        self._horizontal = horizontal
+        self._vertical = abs(strength * math.sin(elevation))
+        self._obey(heading, elevation, dt)
+
+    def _obey(self, heading: float, elevation: float, dt: float) -> None:
         if not -PRESSING_ELEVATION < elevation < PRESSING_ELEVATION:
             pressed = PIVOT_B if elevation > 0.0 else PIVOT_A
             if self._resting:
                 self._take_up(pressed, abs(elevation))
             elif pressed != self._pivot:
                 self._switch_to(pressed)
-        self._watch_elevation(elevation, dt)
-        # The magnet's north is at end A, a quarter turn left of the walking direction.
-        self._follow(math.atan2(-bx, by), dt)
+        self._settled, self._held, self._held_for = watch_elevation(
+            self._settled, self._held, self._held_for, elevation, dt
+        )
+        turn = turn_towards(self._heading, heading, self._play, dt)
+        if turn:
+            self._heading += turn
+            self._turned += abs(turn)
+            arm = 0.5 * self.length * self._pivot
+            self._x, self._y = hung_on(self._pivot_x, self._pivot_y, self._heading, arm)
 
     def _rest(self) -> None:
         self._resting = True
         self._horizontal = self._vertical = 0.0
-
-    def _watch_elevation(self, elevation: float, dt: float) -> None:
-        if not -SETTLED_BAND <= elevation - self._held <= SETTLED_BAND:
-            self._held = elevation
-            self._held_for = 0.0
-            return
-        before, self._held_for = self._held_for, self._held_for + dt
-        if before < SETTLED_AFTER <= self._held_for:
-            self._settled = abs(elevation)
-        elif before >= SETTLED_AFTER:
-            # Smoothed, because a ramp begins inside the band.
-            self._settled += (abs(elevation) - self._settled) * min(1.0, dt / SETTLED_AFTER)
-
-    def _follow(self, field_heading: float, dt: float) -> None:
-        """Turn about the pivot until the field leads by half the play at most (the play operator)."""
-        lead = (field_heading - self._heading + math.pi) % TURN - math.pi
-        play = 0.5 * self._play
-        if -play <= lead <= play:
-            return
-        furthest = ALIGNMENT_RATE * dt
-        turn = min(max(lead - math.copysign(play, lead), -furthest), furthest)
-        self._heading += turn
-        self._turned += abs(turn)
-        # The centre hangs on the fixed pivot, so no rounding adds up: the exact arc of the paper's eq. (1).
-        arm = 0.5 * self.length * self._pivot
-        self._x = self._pivot_x + arm * math.sin(self._heading)
-        self._y = self._pivot_y - arm * math.cos(self._heading)
 
     def _take_up(self, pivot: Pivot, elevation: float) -> None:
         """Out of rest the field comes slowly and the robot lies on both ends: no slip."""
@@ -162,11 +154,7 @@ class SlipPlant:
     def _switch_to(self, pivot: Pivot) -> None:
         slip = self.parameters.at(self._settled, self.length)
         sweep = self._heading - self._sweep_start
-        # Walking is forward when the pivot's sign and the turn's agree (paper, section 2).
-        direction = self._pivot * math.copysign(1.0, sweep) if sweep else 0.0
-        forward = direction * (
-            slip.forward_base + slip.forward_per_sweep * min(abs(sweep), LONGEST_FITTED_SWEEP)
-        )
+        forward = mean_forward(self._pivot, sweep, slip.forward_base, slip.forward_per_sweep)
         self._slide(
             towards_a=pivot * self._random.gauss(slip.out, slip.out_sd),
             forward=self._random.gauss(forward, slip.forward_sd),
@@ -180,9 +168,7 @@ class SlipPlant:
 
     def _slide(self, towards_a: float, forward: float) -> None:
         """Shift the body by `towards_a` along its long axis and `forward` along its heading, m."""
-        cosine, sine = math.cos(self._heading), math.sin(self._heading)
-        self._x += forward * cosine - towards_a * sine
-        self._y += forward * sine + towards_a * cosine
+        self._x, self._y = slid(self._x, self._y, self._heading, towards_a, forward)
         self._slipped += math.hypot(towards_a, forward)
 
     def _stand_on(self, pivot: Pivot) -> None:
@@ -190,3 +176,51 @@ class SlipPlant:
         self._pivot = pivot
         self._pivot_x, self._pivot_y = pivot_point(self.pose, pivot, self.length)
         self._sweep_start = self._heading
+
+
+def watch_elevation(
+    settled: float, held: float, held_for: float, elevation: float, dt: float
+) -> tuple[float, float, float]:
+    """The elevation that the field has settled at, and the one it has kept (rad) and for how long (s), after `dt`."""
+    if not -SETTLED_BAND <= elevation - held <= SETTLED_BAND:
+        return settled, elevation, 0.0
+    after = held_for + dt
+    if held_for >= SETTLED_AFTER:
+        # Smoothed, because a ramp begins inside the band.
+        settled += (abs(elevation) - settled) * min(1.0, dt / SETTLED_AFTER)
+    elif after >= SETTLED_AFTER:
+        settled = abs(elevation)
+    return settled, held, after
+
+
+def turn_towards(heading: float, field_heading: float, play: float, dt: float) -> float:
+    """The body's turn (rad) about its pivot until the field leads by half the play at most (the play operator)."""
+    lead = wrap(field_heading - heading)
+    slack = 0.5 * play
+    if -slack <= lead <= slack:
+        return 0.0
+    furthest = ALIGNMENT_RATE * dt
+    return min(max(lead - math.copysign(slack, lead), -furthest), furthest)
+
+
+def hung_on(pivot_x: float, pivot_y: float, heading: float, arm: float) -> tuple[float, float]:
+    """The centre (m) at the arm's length (m, signed) from the fixed pivot.
+
+    No rounding adds up: the exact arc of the paper's eq. (1).
+    """
+    return pivot_x + arm * math.sin(heading), pivot_y - arm * math.cos(heading)
+
+
+def mean_forward(pivot: float, sweep: float, base: float, per_sweep: float) -> float:
+    """How far in the walking direction the next pivot lands on average after `sweep` (rad) about this one, m.
+
+    Walking is forward when the pivot's sign and the turn's agree (paper, section 2).
+    """
+    direction = pivot * math.copysign(1.0, sweep) if sweep else 0.0
+    return direction * (base + per_sweep * min(abs(sweep), LONGEST_FITTED_SWEEP))
+
+
+def slid(x: float, y: float, heading: float, towards_a: float, forward: float) -> tuple[float, float]:
+    """The centre after a slide along the long axis and along the heading, all in m."""
+    cosine, sine = math.cos(heading), math.sin(heading)
+    return x + forward * cosine - towards_a * sine, y + forward * sine + towards_a * cosine

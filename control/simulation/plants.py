@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from importlib.util import find_spec
 from typing import Any, Protocol
 
 from pydantic import Field
@@ -56,7 +55,7 @@ class PlantKind(Protocol):
         ...
 
 
-class MissingExtra(RuntimeError):
+class MissingExtra(ValueError):
     """A plant whose library is not installed."""
 
 
@@ -109,7 +108,7 @@ class SlipChoiceParameters(Parameters):
         gt=0.0,
         le=1000.0,
         title="Magnetic ratio Λ",
-        description="Magnet's torque over the weight's at 10 mT, 2 m B / (W L); decides only how far the free end lifts.",
+        description="Magnet's torque over the weight's at 10 mT, 2 m B / (W L); decides only how the free end lifts.",
     )
 
     def table(self) -> SlipParameters:
@@ -154,7 +153,9 @@ class NoSlipParameters(Parameters):
 class NoSlipKind:
     name = "noslip"
     title = "No slip"
-    summary = "The paper's kinematic model: the body's heading is the field's, each pivot stays where it lands."
+    summary = (
+        "The paper's kinematic model: the body's heading is the field's, each pivot stays where it lands."
+    )
     Parameters = NoSlipParameters
 
     def __init__(self, parameters: NoSlipParameters) -> None:  # noqa: ARG002
@@ -175,11 +176,13 @@ class RigidKind:
         self.parameters = parameters
 
     def build(self, length: float, start: Pose, seed: int) -> Plant:
-        if find_spec("mujoco") is None:
+        try:
+            from control.simulation.rigid.plant import RigidPlant
+        except ModuleNotFoundError as error:
+            if error.name != "mujoco":
+                raise
             raise MissingExtra(
-                "the plant 'rigid' needs MuJoCo, which is not installed: add the extra `physics` "
-                "(`uv sync --extra physics`), or choose the plant slip or noslip"
-            )
-        from control.simulation.rigid.plant import RigidPlant
-
+                "the plant 'rigid' needs MuJoCo, which is not installed: install the extra `physics` with "
+                "`uv sync --extra physics`, or choose the plant slip or noslip"
+            ) from None
         return RigidPlant(self.parameters, length, start, seed)

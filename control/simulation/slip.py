@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import astuple, dataclass
 from itertools import pairwise
 
@@ -59,20 +60,28 @@ class SlipParameters:
 
     def at(self, tilt: float, length: float) -> Slip:
         """The slip at `tilt` (rad), linear between rows, the end rows beyond; for a robot of `length` (m)."""
-        return self._between_rows(tilt).scaled(length / self.reference_length)
-
-    def _between_rows(self, tilt: float) -> Slip:
-        if not tilt > self.rows[0].tilt:
-            return self.rows[0]
-        for low, high in pairwise(self.rows):
-            if tilt <= high.tilt:
-                return _mix(low, high, (tilt - low.tilt) / (high.tilt - low.tilt))
-        return self.rows[-1]
+        low, share = between_rows([row.tilt for row in self.rows], tilt)
+        if share == 0.0:
+            return self.rows[low].scaled(length / self.reference_length)
+        pairs = zip(astuple(self.rows[low]), astuple(self.rows[low + 1]), strict=True)
+        mean = Slip(*(mixed(start, end, share) for start, end in pairs))
+        return mean.scaled(length / self.reference_length)
 
 
-def _mix(low: Slip, high: Slip, share: float) -> Slip:
-    pairs = zip(astuple(low), astuple(high), strict=True)
-    return Slip(*(start * (1.0 - share) + end * share for start, end in pairs))
+def between_rows(tilts: Sequence[float], tilt: float) -> tuple[int, float]:
+    """The row below `tilt` (rad) and the share of the way to the next one; 0 beyond the ends of the table."""
+    last = len(tilts) - 1
+    if not tilt > tilts[0]:
+        return 0, 0.0
+    for low in range(last):
+        if tilt <= tilts[low + 1]:
+            return low, (tilt - tilts[low]) / (tilts[low + 1] - tilts[low])
+    return last, 0.0
+
+
+def mixed(start: float, end: float, share: float) -> float:
+    """The value at `share` of the way."""
+    return start * (1.0 - share) + end * share
 
 
 def _row(

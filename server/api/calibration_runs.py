@@ -13,10 +13,11 @@ from starlette.requests import HTTPConnection
 
 from control.controllers.wiggle import WiggleParameters
 from control.gait import Gait
+from control.gait_settings import MM
 from server.api.access import TheChanges, TheRig
 from server.api.body import StrictRoute
 from server.api.rig_file import own_file, told
-from server.api.schemas import MM, Edge
+from server.api.schemas import Edge
 from server.assembly import Machine
 from server.calibration.gait import Star, StarWalk
 from server.calibration.latency import LatencyWalk

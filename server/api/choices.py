@@ -9,6 +9,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from control.controllers import controllers
+from control.gait_settings import GaitSettings
 from control.registry import Registry, UnknownName
 from control.runs import Choice, Selection
 from control.trajectories import trajectories
@@ -17,7 +18,6 @@ from server.api.schemas import (
     ChoiceBody,
     ChoiceChange,
     GaitChange,
-    GaitSettings,
     SelectionBody,
     SelectionChange,
 )

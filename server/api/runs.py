@@ -80,6 +80,10 @@ async def resume(rig: TheRig) -> dict[str, Any]:
 
 
 def newest(rig: TheRig) -> dict[str, Any]:
+    """The run that is on, or was the last one; the rig's state while the robot walks what is no run of its own."""
+    walked = rig.snapshot.run
+    if not rig.runs or (walked is not None and walked.id != rig.runs[0].id):
+        return ticks.state(rig.snapshot)
     return run_json(rig.runs[0])
 
 

@@ -9,36 +9,16 @@ from typing import Annotated
 
 from pydantic import Field, JsonValue, StringConstraints
 
-from control.gait_settings import Edge, GaitSettings, TimeLawName
+from control.edge import Duration, Edge, Name, Passes
+from control.gait_settings import GaitSettings, TimeLawName
 from control.trajectories.fields import SLOWEST_MM_S
 from control.trajectories.waypoints import Smoothing
 
-Name = Annotated[str, StringConstraints(min_length=1, max_length=80)]
 PathName = Annotated[str, StringConstraints(pattern=r"^[A-Za-z0-9][A-Za-z0-9 _.-]{0,59}$")]
 Label = Annotated[str, StringConstraints(max_length=200)]
 Tag = Annotated[str, StringConstraints(min_length=1, max_length=40)]
 Tags = Annotated[list[Tag], Field(max_length=20)]
 PointMM = Annotated[list[Annotated[float, Field(ge=-500.0, le=500.0)]], Field(min_length=2, max_length=2)]
-Passes = Annotated[
-    float,
-    Field(
-        gt=0.0,
-        le=1000.0,
-        title="Passes",
-        description="How often to walk the path.",
-        json_schema_extra={"unit": "1"},
-    ),
-]
-Duration = Annotated[
-    float,
-    Field(
-        gt=0.0,
-        le=86400.0,
-        title="Duration",
-        description="End after this time.",
-        json_schema_extra={"unit": "s"},
-    ),
-]
 
 
 class ChoiceBody(Edge):
@@ -93,7 +73,7 @@ class RunBody(SelectionChange):
     duration_s: Duration | None = None
     unattended: bool = False
     label: Label = ""
-    tags: Tags = []
+    tags: Tags = Field(default=[])
 
 
 class PreviewBody(ChoiceBody):

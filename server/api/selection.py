@@ -6,10 +6,11 @@ from typing import Any
 
 from fastapi import APIRouter
 
+from control.gait_settings import GaitSettings
 from server.api.access import TheRig
 from server.api.body import StrictRoute
 from server.api.choices import select, selection_json
-from server.api.schemas import GaitSettings, SelectionBody
+from server.api.schemas import SelectionBody
 
 router = APIRouter(tags=["selection"], route_class=StrictRoute)
 

@@ -65,7 +65,7 @@ def gait(
     legs: Annotated[int, typer.Option(min=2, max=36, help="Legs, each walked out and back.")] = 5,
     leg: Annotated[float, typer.Option("--leg", min=5.0, max=50.0, help="Length of a leg, mm.")] = 20.0,
     rate: Annotated[float, typer.Option(min=5.0, max=359.0, help="Swing rate, degrees per second.")] = 100.0,
-    plant: Annotated[str | None, typer.Option(help="Simulated robot: slip or noslip.")] = None,
+    plant: Annotated[str | None, typer.Option(help="Simulated robot: slip, noslip or rigid.")] = None,
     seed: Annotated[int | None, typer.Option(help="Seed of the simulation.")] = None,
     rig: RigOption = None,
     save: SaveOption = False,
@@ -87,7 +87,7 @@ def gait(
 
 
 def _gait(sweep: float, tilt: float) -> Gait:
-    from server.api.schemas import GaitSettings
+    from control.gait_settings import GaitSettings
 
     try:
         return GaitSettings(sweep_deg=sweep, tilt_deg=tilt, max_rate_deg_s=359.0).to_si()

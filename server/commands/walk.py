@@ -15,6 +15,7 @@ import typer
 from pydantic import ValidationError
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
+from control.simulation.plants import MissingExtra
 from server.commands.consent import YesOption, ask_for_consent
 from server.commands.outcome import (
     FAILED,
@@ -50,7 +51,7 @@ def run(
         list[str] | None,
         typer.Option("--set", help="A parameter, such as controller.gain=2.5; may be given again."),
     ] = None,
-    plant: Annotated[str | None, typer.Option(help="Simulated robot: slip or noslip.")] = None,
+    plant: Annotated[str | None, typer.Option(help="Simulated robot: slip, noslip or rigid.")] = None,
     sweep: Annotated[float, typer.Option(help="Sweep angle, degrees.")] = 30.0,
     tilt: Annotated[float, typer.Option(help="Tilt of the field, degrees.")] = 25.0,
     path_step: Annotated[float, typer.Option("--path-step", help="Path time per 0.1 s, s.")] = 0.1,
@@ -107,6 +108,8 @@ def walked(walk: HeadlessWalk, *, consent: bool) -> dict[str, Any]:
             done = _carried_out(walk, id, built, archive, consent=consent)
     except (Refused, LinkError, CameraError) as error:
         raise fail(str(error), REFUSED) from error
+    except MissingExtra as error:
+        raise fail(str(error), USAGE) from error
     except OSError as error:
         raise fail(f"the rig cannot be opened: {error}", REFUSED) from error
     except (OutsideWorkspace, ValueError) as error:
@@ -210,9 +213,10 @@ def _value(text: str) -> Any:
 def _request(
     controller: Choice, trajectory: Choice, gait: dict[str, Any], passes: float, duration: float | None
 ) -> RunRequest:
+    from control.gait_settings import GaitSettings
     from control.registry import UnknownName
     from control.runs import RunRequest, Selection
-    from server.api.schemas import GaitSettings, RunBody
+    from server.api.schemas import RunBody
 
     try:
         body = RunBody(passes=passes, duration_s=duration)

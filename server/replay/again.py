@@ -10,13 +10,14 @@ from typing import Any
 import numpy as np
 from pydantic import ValidationError
 
+from control.gait_settings import MM
 from control.runs import RunRequest
 from control.safety import Refused
 from control.trajectories import trajectories
 from control.trajectories.custom import SavedPath
 from control.trajectories.waypoints import WaypointsParameters
 from server.api.choices import select
-from server.api.schemas import MM, SelectionBody
+from server.api.schemas import SelectionBody
 from server.catalogue.records import RunRecord
 from server.custom_trajectories import CustomTrajectories
 from server.replay.then import exact_gait, saved_path

@@ -9,8 +9,8 @@ from typing import Any
 from pydantic import ValidationError
 
 from control.gait import Gait, TimeLaw
+from control.gait_settings import GaitSettings
 from control.trajectories.waypoints import WaypointsParameters
-from server.api.schemas import GaitSettings
 from server.settings import RigFile
 
 Settings = Mapping[str, Any]

@@ -18,6 +18,12 @@ th,td{padding:.35rem .6rem;border-bottom:1px solid #e3e3e3;text-align:left;verti
 td.number{text-align:right;font-variant-numeric:tabular-nums}
 .reproduced{color:#00694b;font-weight:600}.not-reproduced{color:#b02a00;font-weight:600}
 .not-comparable{color:#555;font-weight:600}small{color:#555}
+pre{overflow-x:auto;font-size:.85rem;padding:.6rem;background:#f4f4f4;border-radius:6px}summary{cursor:pointer}
+@media (prefers-color-scheme:dark){
+body{color:#e6e6e6;background:#15181b}h2{border-color:#3a3f44}th,td{border-color:#33383d}
+figcaption,small,.not-comparable{color:#aab2b9}pre{background:#1f2428}
+.reproduced{color:#4fd0a5}.not-reproduced{color:#ff9466}
+figure img{background:#fff;border-radius:6px;padding:6px;box-sizing:border-box}}
 """
 
 

@@ -11,7 +11,9 @@ class NoSuchStudy(StudyStoreError):
     """There is no study of that id."""
 
     def __init__(self, id: str) -> None:
-        super().__init__(f"There is no study {id[:80]!a}; `pivotrig studies list` shows those that there are.")
+        super().__init__(
+            f"There is no study {id[:80]!a}; `pivotrig studies list` shows those that there are."
+        )
         self.id = id
 
 

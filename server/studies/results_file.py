@@ -6,6 +6,7 @@ A whole line that makes no sense, after a bad disk, is a run that was not carrie
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 from array import array
@@ -96,11 +97,9 @@ def lines(path: Path, start: int, end: int | None = None) -> Iterator[tuple[int,
 
 def new_rows(path: Path, start: int) -> tuple[list[StudyRow], int]:
     """What came behind the byte `start`, and where to go on the next time: for a reader in another process."""
-    rows = []
-    for _, start, row in lines(path, start):
-        if row is not None:
-            rows.append(row)
-    return rows, start
+    found = list(lines(path, start))
+    rows = [row for _, _, row in found if row is not None]
+    return rows, found[-1][1] if found else start
 
 
 def row_in(line: bytes) -> StudyRow | None:
@@ -118,8 +117,12 @@ class Book:
             self._number = os.open(path, APPENDING, 0o666)
         except OSError as error:
             raise cannot_write(path, error) from error
-        self.done = Results(path)
-        os.ftruncate(self._number, self.done.end)
+        try:
+            self.done = Results(path)
+            os.ftruncate(self._number, self.done.end)
+        except OSError as error:
+            os.close(self._number)
+            raise cannot_write(path, error) from error
 
     def append(self, row: StudyRow) -> None:
         """Returns when the row is safe on the disk."""
@@ -139,7 +142,8 @@ class Book:
                 rest = rest[os.write(self._number, rest) :]
             os.fsync(self._number)
         except OSError as error:
-            os.ftruncate(self._number, self.done.end)
+            with contextlib.suppress(OSError):  # else the next writer does it
+                os.ftruncate(self._number, self.done.end)
             raise cannot_write(self.done.path, error) from error
 
     def close(self) -> None:

@@ -95,7 +95,9 @@ class StudyStore:
             raise NoSuchStudy(id)
         claim = Claim(folder, id)
         try:
-            (folder / DEFINITION).unlink(missing_ok=True)  # from now on nobody sees it, whatever comes between
+            (folder / DEFINITION).unlink(
+                missing_ok=True
+            )  # from now on nobody sees it, whatever comes between
             shutil.rmtree(folder)
         except OSError as error:
             raise StudyStoreError(f"the study {id} cannot be deleted: {error.strerror or error}") from error
@@ -113,7 +115,9 @@ class StudyStore:
 
     def newest_named(self, name: str) -> Study | None:
         """The newest unfinished study of that name."""
-        return next((each for each in self.all() if each.definition.name == name and each.state != "finished"), None)
+        return next(
+            (each for each in self.all() if each.definition.name == name and each.state != "finished"), None
+        )
 
     def relist(self) -> int:
         """Make the catalogue's list of studies what is in the folder; how many there are."""

@@ -92,7 +92,7 @@ class Study:
         return Tally(len(results), results.failed)
 
     def table(self) -> StudyTable:
-        return StudyTable(self.definition, self.rows())
+        return StudyTable(self.definition.axis_names, self.results().rows())
 
     def write_table(self) -> Path:
         """The table as CSV in the study's folder; raises `StudyStoreError`."""
@@ -106,7 +106,9 @@ class Study:
     def append(self, row: StudyRow) -> None:
         """While it is claimed; returns when the row is safe on the disk."""
         if self._carrying is None:
-            raise StudyStoreError(f"the study {self.definition.name!r} takes rows from who carries it out only")
+            raise StudyStoreError(
+                f"the study {self.definition.name!r} takes rows from who carries it out only"
+            )
         self._carrying.append(row)
 
     @contextmanager

@@ -96,8 +96,18 @@ def open_lasting_tab(browser: Browser) -> Iterator[OpenTab]:
 @pytest.fixture
 def dashboard(served: ServedRig, open_tab: OpenTab) -> Iterator[Visit]:
     """A first visit to a rig at rest; at the end nothing has left the server and nobody has complained."""
+    yield from first_visit(served, open_tab, scene=False)
+
+
+@pytest.fixture
+def dashboard_with_scene(served: ServedRig, open_tab: OpenTab) -> Iterator[Visit]:
+    """The same, and the scene is drawn."""
+    yield from first_visit(served, open_tab, scene=True)
+
+
+def first_visit(served: ServedRig, open_tab: OpenTab, *, scene: bool) -> Iterator[Visit]:
     served.rest()
-    visit = open_tab(served.url)
+    visit = open_tab(served.url, scene=scene)
     yield visit
     assert visit.foreign(served.url) == []
     assert visit.complaints == []

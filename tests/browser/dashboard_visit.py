@@ -17,9 +17,9 @@ from typing import Any
 from urllib.parse import urlsplit
 
 import pytest
-from playwright.sync_api import BrowserContext, ConsoleMessage, Page
+from playwright.sync_api import BrowserContext, ConsoleMessage, Locator, Page
 
-START_TIMEOUT = 40.0
+START_TIMEOUT = 90.0
 """A server under load is up within this, s."""
 STOP_TIMEOUT = 10.0
 READY_LINE = re.compile(r"dashboard: (http://\S+)")
@@ -126,6 +126,11 @@ class Visit:
         return [
             seen for seen in self.requests if not seen.startswith(local) and urlsplit(seen).netloc != home
         ]
+
+
+def rig_state(page: Page) -> Locator:
+    """What the bar says of the rig; a list that is loading is a status too."""
+    return page.get_by_role("banner").get_by_role("status")
 
 
 OpenTab = Callable[..., Visit]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from dashboard_visit import ServedRig, eventually
+from dashboard_visit import ServedRig, eventually, rig_state
 from playwright.sync_api import Locator, Page, expect
 
 PICTURE = (640, 480)
@@ -17,7 +17,7 @@ def panel(page: Page) -> Locator:
 
 def open_setup(page: Page, step: str) -> Locator:
     """The panel at one of its steps."""
-    expect(page.get_by_role("status")).not_to_contain_text("connecting")
+    expect(rig_state(page)).not_to_contain_text("connecting")
     page.get_by_role("button", name="Set up camera").click()
     page.get_by_role("tab", name=step).click()
     return panel(page)

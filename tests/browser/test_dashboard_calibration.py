@@ -6,7 +6,7 @@ import re
 from typing import Literal
 
 import pytest
-from dashboard_visit import OpenTab, ServedRig, Visit, eventually
+from dashboard_visit import OpenTab, ServedRig, Visit, eventually, rig_state
 from playwright.sync_api import Page, expect
 from setup_visit import (
     button,
@@ -30,7 +30,7 @@ def visit(workshop: ServedRig, open_tab: OpenTab) -> Visit:
     """With the camera as it comes, and nobody else on the plate."""
     workshop.rest()
     workshop.send("PATCH", "/rig", {"simulation": None, "camera": None})
-    return open_tab(workshop.url)
+    return open_tab(workshop.url, scene=False)
 
 
 def take_all_views(page: Page) -> None:
@@ -139,13 +139,13 @@ def drag_a_corner(page: Page, rig: ServedRig) -> None:
 def test_an_armed_rig_is_disarmed_by_the_setup_only_on_request(dashboard: Visit, served: ServedRig) -> None:
     page = dashboard.page
     page.get_by_role("button", name="Arm", exact=True).click()
-    expect(page.get_by_role("status")).to_contain_text("armed")
+    expect(rig_state(page)).to_contain_text("armed")
     setup = open_setup(page, "Camera")
     expect(setup).to_contain_text("can be changed only while it is disarmed")
     expect(setup.get_by_role("radio").first).to_be_disabled()
     assert served.ask("/state")["rig"] == "armed"
     button(page, "Disarm").click()
-    expect(page.get_by_role("status")).to_contain_text("disarmed")
+    expect(rig_state(page)).to_contain_text("disarmed")
     expect(setup).not_to_contain_text("can be changed only")
     expect(setup.get_by_role("radio").first).to_be_enabled()
 
@@ -156,17 +156,17 @@ def test_escape_and_the_button_stop_while_the_setup_is_open(dashboard: Visit) ->
     expect(page.get_by_role("button", name="STOP", exact=True)).to_be_in_viewport()
     for stop in (lambda: page.keyboard.press("Escape"), page.get_by_role("button", name="STOP").click):
         button(page, "Arm").click()
-        expect(page.get_by_role("status")).to_contain_text("armed")
+        expect(rig_state(page)).to_contain_text("armed")
         stop()
-        expect(page.get_by_role("status")).to_contain_text("fault")
+        expect(rig_state(page)).to_contain_text("fault")
         expect(setup).to_be_visible()
         button(page, "Reset").click()
-        expect(page.get_by_role("status")).to_contain_text("disarmed")
+        expect(rig_state(page)).to_contain_text("disarmed")
 
 
 def test_the_setup_is_opened_walked_through_and_closed_by_keys_alone(dashboard: Visit) -> None:
     page = dashboard.page
-    expect(page.get_by_role("status")).to_contain_text("disarmed")
+    expect(rig_state(page)).to_contain_text("disarmed")
     opener = page.get_by_role("button", name="Set up camera")
     opener.focus()
     page.keyboard.press("Enter")
@@ -190,7 +190,7 @@ def test_a_walk_that_is_stopped_says_why_and_offers_nothing_to_save(dashboard: V
     button(page, "Arm").click()
     star.get_by_role("button", name="Walk a star").click()
     expect(star.get_by_role("progressbar", name="The robot walks a star")).to_be_visible()
-    expect(page.get_by_role("status")).to_contain_text("running")
+    expect(rig_state(page)).to_contain_text("running")
     page.keyboard.press("Escape")
     expect(star.get_by_role("alert")).to_contain_text("walk was")
     expect(star.get_by_role("button", name="Save")).to_have_count(0)
@@ -224,7 +224,7 @@ def test_of_two_robots_that_look_alike_a_click_says_which_one_it_is(
     visit: Visit, workshop: ServedRig
 ) -> None:
     page = visit.page
-    expect(page.get_by_role("status")).to_contain_text("ready to arm")
+    expect(rig_state(page)).to_contain_text("ready to arm")
     place = robot_place(workshop)
     workshop.send("PATCH", "/rig", {"simulation": {"scene": "standing_twins"}})
     expect(page.get_by_text("Click the robot: the one to follow")).to_be_visible()
@@ -278,7 +278,7 @@ def test_on_a_phone_each_step_fits_its_width_and_its_texts_can_be_read(
     served: ServedRig, open_tab: OpenTab, scheme: Literal["light", "dark"]
 ) -> None:
     served.rest()
-    page = open_tab(served.url, width=390, height=844).page
+    page = open_tab(served.url, width=390, height=844, scene=False).page
     page.emulate_media(color_scheme=scheme)
     setup = open_setup(page, "Camera")
     for step in ("Camera", "Colour", "Lens", "Plane", "Robot"):

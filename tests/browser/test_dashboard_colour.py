@@ -35,7 +35,7 @@ def lit_places(page: Page) -> np.ndarray:
 @pytest.fixture
 def visit(workshop: ServedRig, open_tab: OpenTab) -> Visit:
     workshop.rest()
-    return open_tab(workshop.url)
+    return open_tab(workshop.url, scene=False)
 
 
 def test_one_click_on_the_robot_finds_its_colour_and_lights_it_up(visit: Visit, workshop: ServedRig) -> None:

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import pytest
-from dashboard_visit import OpenTab, ServedRig, Visit, eventually
+from dashboard_visit import OpenTab, ServedRig, Visit, eventually, rig_state
 from picture import colours, pixels, share_like
 from playwright.sync_api import FloatRect, Locator, Page, expect
 
@@ -205,7 +205,7 @@ def test_space_stops_the_rig_and_not_the_replay(library: Library, theatre: Visit
     page.get_by_label("Speed").select_option("0.1")
     button(page, "Play").press("Enter")
     page.keyboard.press(" ")
-    expect(page.get_by_role("status")).to_contain_text("fault")
+    expect(rig_state(page)).to_contain_text("fault")
     expect(bar(page)).to_contain_text("The rig itself: fault")
     expect(button(page, "Pause")).to_be_visible()
     library.rig.rest()
@@ -262,7 +262,8 @@ def test_two_runs_stand_side_by_side_on_one_time_axis(library: Library, theatre:
 def test_a_recording_that_is_not_there_is_said_and_the_rig_is_shown(theatre: Visit) -> None:
     page = theatre.page
     show(page, "never-was")
-    expect(page.get_by_role("alert")).to_contain_text("The recording cannot be shown")
+    gone = page.get_by_role("alert").filter(has_text="The recording cannot be shown")
+    expect(gone.first).to_be_visible()
     expect(bar(page)).to_have_count(0)
     assert "replay" not in page.url
 
@@ -316,7 +317,7 @@ def test_a_replay_goes_on_where_it_was_when_the_server_comes_back_and_ends_when_
     slider(page).press("End")
     eventually(lambda: shown_time(page) > 3.9, "it can be scrubbed again")
     gone = "The recording cannot be shown"
-    expect(other.get_by_role("alert").filter(has_text=gone)).to_have_count(1)
+    expect(other.get_by_role("alert").filter(has_text=gone).first).to_be_visible()
     expect(bar(other)).to_have_count(0)
     mortal.send("DELETE", f"/runs/{library.ids[0]}")
     expect(page.get_by_role("alert").filter(has_text="was deleted")).to_contain_text(gone)

@@ -10,7 +10,7 @@ from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
 import pytest
-from dashboard_visit import PATIENCE, OpenTab, ServedRig, Visit, eventually
+from dashboard_visit import PATIENCE, OpenTab, ServedRig, Visit, eventually, rig_state
 from playwright.sync_api import Locator, Page, expect
 
 from server.catalogue.catalogue import Catalogue
@@ -179,7 +179,7 @@ def test_a_run_is_started_again_which_gives_the_page_back_to_the_rig_and_listed_
     show_replay(page, library.recorded[0])
     button(shown, "Run again").click()
     expect(page.get_by_role("region", name="Replay")).to_have_count(0)
-    expect(page.get_by_role("status")).to_contain_text("running")
+    expect(rig_state(page)).to_contain_text("running")
     expect(page.locator(".recording-sign")).to_contain_text("REC")
     expect(shown).to_contain_text("Started again")
     newest = page.get_by_role("row").nth(1)
@@ -215,7 +215,7 @@ def test_runs_are_compared_deleted_and_pruned_and_stop_stays_in_reach(library: L
     expect(asked).to_contain_text("Delete old-001?")
     expect(asked).to_contain_text("old-010 stays")
     button(page, "STOP").click()
-    expect(page.get_by_role("status")).to_contain_text("fault")
+    expect(rig_state(page)).to_contain_text("fault")
     button(asked, "Delete").click()
     expect(names(page).filter(has_text="old-001")).to_have_count(0)
     expect(names(page).filter(has_text="old-010")).to_have_count(1)

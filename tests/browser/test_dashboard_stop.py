@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from dashboard_visit import ServedRig, Visit, eventually
+from dashboard_visit import ServedRig, Visit, eventually, rig_state
 from playwright.sync_api import expect
 
 pytestmark = pytest.mark.exclusive
@@ -11,7 +11,7 @@ pytestmark = pytest.mark.exclusive
 
 def arm(visit: Visit) -> None:
     visit.page.get_by_role("button", name="Arm", exact=True).click()
-    expect(visit.page.get_by_role("status")).to_contain_text("armed")
+    expect(rig_state(visit.page)).to_contain_text("armed")
 
 
 @pytest.mark.parametrize("how", ["Escape", "Space", "click"])
@@ -22,22 +22,22 @@ def test_stop_leads_to_a_fault_that_only_reset_and_arm_leave(dashboard: Visit, h
         page.get_by_role("button", name="STOP", exact=True).click()
     else:
         page.keyboard.press(how)
-    expect(page.get_by_role("status")).to_contain_text("fault")
-    expect(page.get_by_role("status")).to_contain_text("stop")
+    expect(rig_state(page)).to_contain_text("fault")
+    expect(rig_state(page)).to_contain_text("stop")
     expect(page.get_by_role("button", name="Arm", exact=True)).to_have_count(0)
     page.get_by_role("button", name="Reset", exact=True).click()
-    expect(page.get_by_role("status")).to_contain_text("disarmed")
+    expect(rig_state(page)).to_contain_text("disarmed")
     expect(page.get_by_role("button", name="Arm", exact=True)).to_be_enabled()
 
 
-def test_escape_stops_while_the_scene_has_the_focus(dashboard: Visit) -> None:
-    page = dashboard.page
-    arm(dashboard)
+def test_escape_stops_while_the_scene_has_the_focus(dashboard_with_scene: Visit) -> None:
+    page = dashboard_with_scene.page
+    arm(dashboard_with_scene)
     scene = page.get_by_title("3D scene of coils, field and robot")
     expect(page.get_by_text("Loading the 3D scene")).to_be_hidden()
     scene.click()
     page.keyboard.press("Escape")
-    expect(page.get_by_role("status")).to_contain_text("fault")
+    expect(rig_state(page)).to_contain_text("fault")
 
 
 def test_space_types_inside_a_text_field_and_stops_outside(dashboard: Visit, served: ServedRig) -> None:
@@ -54,10 +54,10 @@ def test_space_types_inside_a_text_field_and_stops_outside(dashboard: Visit, ser
 
 def test_the_question_mark_shows_the_keys_and_leaves_stop_in_reach(dashboard: Visit) -> None:
     page = dashboard.page
-    expect(page.get_by_role("status")).to_contain_text("disarmed")
+    expect(rig_state(page)).to_contain_text("disarmed")
     page.keyboard.press("?")
     expect(page.get_by_role("dialog")).to_contain_text("Escape")
     page.get_by_role("button", name="STOP", exact=True).click()
-    expect(page.get_by_role("status")).to_contain_text("fault")
+    expect(rig_state(page)).to_contain_text("fault")
     page.get_by_role("button", name="Close").click()
     expect(page.get_by_role("dialog")).to_be_hidden()

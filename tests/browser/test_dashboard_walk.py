@@ -6,7 +6,7 @@ import math
 import re
 
 import pytest
-from dashboard_visit import Visit, becomes_true, eventually
+from dashboard_visit import Visit, becomes_true, eventually, rig_state
 from picture import colours, pixels, share_like
 from playwright.sync_api import Locator, Page, expect
 
@@ -24,7 +24,7 @@ def button(page: Page, name: str) -> Locator:
 
 
 def state(page: Page) -> Locator:
-    return page.get_by_role("status")
+    return rig_state(page)
 
 
 def reading(page: Page, name: str) -> str:
@@ -45,8 +45,7 @@ def scene_is_drawn(page: Page) -> bool:
 
 
 def walk(page: Page) -> None:
-    """Two clicks, once the page stands: its first second in a software browser starves the simulated rig."""
-    eventually(lambda: scene_is_drawn(page), "a drawn scene")
+    """Two clicks."""
     button(page, "Arm").click()
     button(page, "Start walking").click()
     expect(state(page)).to_contain_text("running")
@@ -56,8 +55,9 @@ def camera(page: Page) -> Locator:
     return page.get_by_role("img", name="Camera picture")
 
 
-def test_two_clicks_after_the_first_visit_the_robot_walks_the_eight(dashboard: Visit) -> None:
-    page = dashboard.page
+def test_two_clicks_after_the_first_visit_the_robot_walks_the_eight(dashboard_with_scene: Visit) -> None:
+    page = dashboard_with_scene.page
+    eventually(lambda: scene_is_drawn(page), "a drawn scene")
     expect(state(page)).to_contain_text("disarmed")
     expect(page.get_by_text("SIM", exact=True)).to_be_visible()
     eventually(lambda: "locked" in reading(page, "Tracking"), "the camera sees the robot")
@@ -87,8 +87,8 @@ def test_each_chart_draws_what_comes_in(dashboard: Visit) -> None:
         eventually(lambda chart=chart: share_like(pixels(chart), CURVE_BLUE) > 5e-4, f"a curve in {name}")
 
 
-def test_the_scene_draws_coils_and_field(dashboard: Visit) -> None:
-    page = dashboard.page
+def test_the_scene_draws_coils_and_field(dashboard_with_scene: Visit) -> None:
+    page = dashboard_with_scene.page
     if not becomes_true(lambda: scene_is_drawn(page)):
         page.reload()
         eventually(lambda: scene_is_drawn(page), "a drawn scene, after one reload")

@@ -3,6 +3,7 @@ import { endIfReplayed } from "../replay/replay.js";
 import { reloadIfInspected } from "../runs/inspected.js";
 import { hearOfRun, loadRuns } from "../runs/listing.js";
 import { get, say, set } from "../store.js";
+import { hearOfStudy, loadStudies } from "../studies/listing.js";
 import { hasUnsentEdits, showRunPath } from "./actions.js";
 import { read } from "./rest.js";
 import { keepOpen } from "./socket.js";
@@ -47,6 +48,7 @@ function watch(socket) {
 
 async function load() {
   loadRuns();
+  loadStudies();
   const [rig, camera, controllers, trajectories, gaitSchema, selection, newest] = await Promise.all(
     ["/rig", "/camera", "/controllers", "/trajectories", "/gait", "/selection", "/runs?limit=1"].map(read),
   );
@@ -90,6 +92,7 @@ const handlers = {
     reloadIfInspected(message);
     endIfReplayed(message);
   },
+  study: hearOfStudy,
   event(event) {
     set({ events: [event, ...get().events].slice(0, EVENTS_KEPT) });
   },

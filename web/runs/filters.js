@@ -32,6 +32,7 @@ export function Filters() {
         <${KnownTags} />
         <${Choice} name="pinned" title="Pinned" choices=${PINNED} chosen=${filter.pinned} />
         <${Choice} name="simulated" title="Rig" choices=${SIMULATED} chosen=${filter.simulated} />
+        ${filter.study && html`<${OfStudy} id=${filter.study} />`}
       </div>
     </form>
   `;
@@ -44,6 +45,12 @@ function Choice({ name, title, choices, chosen }) {
       ${choices.map(([value, words]) => html`<option value=${value} selected=${value === chosen}>${words}</option>`)}
     </select>
   `;
+}
+
+/** Chosen from the study itself; here it can be let go. */
+function OfStudy({ id }) {
+  const name = useStore((state) => state.studies?.studies?.find((study) => study.id === id)?.name ?? id);
+  return html`<button type="button" data-set="true" title="Show the runs of all studies" onClick=${() => filterBy({ study: "" })}>Study: ${name} ×</button>`;
 }
 
 /** The tags of the runs that have come so far. */

@@ -13,7 +13,7 @@ const UNFINISHED_PAUSE_MS = 1000;
 const UNFINISHED_LOOKS = 30;
 const TYPING_PAUSE_MS = 250;
 
-export const NO_FILTER = { text: "", state: "", controller: "", trajectory: "", tag: "", pinned: "", simulated: "" };
+export const NO_FILTER = { text: "", state: "", controller: "", trajectory: "", tag: "", pinned: "", simulated: "", study: "" };
 
 const EMPTY = {
   filter: NO_FILTER,

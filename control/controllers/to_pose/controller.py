@@ -21,8 +21,6 @@ ANGLES = tuple(math.radians(angle) for angle in (5.0, 10.0, 15.0, 20.0, 25.0, 30
 """Sweeps that are made, rad: small ones for the last millimetre; slip is known up to the widest."""
 PATIENCE = 60
 """Sweeps that may be made beyond three times those that a straight way takes; then it is given up."""
-ROUNDING = 1e-6
-"""A robot at the edge of the workspace may stay there, m."""
 
 
 class ToPoseParameters(Parameters):
@@ -126,7 +124,5 @@ class ToPose:
         )
 
     def _bounds(self, situation: Situation) -> Bounds:
-        pose = situation.pose
         edge = math.inf if situation.workspace is None else situation.workspace
-        edge = max(edge, abs(pose.x), abs(pose.y)) + ROUNDING
         return Bounds(self._goal, self._towards, edge)

@@ -6,6 +6,7 @@ sigma and comes to P + u E with E = i sigma (L/2) (1 - e^(i a)); leaving a pivot
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,8 +21,9 @@ WIDTH = 256
 """Chains kept at each depth."""
 FIXED_COST = 0.4
 """Of any sweep, as a share of the cost of the widest one: switching takes as long as turning by some 15 degrees."""
-OVER_THE_EDGE = 1e9
-"""Cost of what must not be."""
+OVER_THE_EDGE = 1e6
+"""Cost of leading out of the workspace, in sweeps per metre: a thousand for each millimetre. A robot that slipped
+over the edge still finds the way that leads back soonest; what must not be is the loop's to forbid."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,8 +62,8 @@ class Bounds:
     def excess(self, place: Complex) -> Float:
         """What a chain through these places costs beside its sweeps."""
         there = self.origin + self.turn * place
-        outside = np.maximum(np.abs(there.real), np.abs(there.imag)) > self.edge
-        return np.where(outside, OVER_THE_EDGE, 0.0)
+        outside = np.maximum(np.abs(there.real), np.abs(there.imag)) - self.edge
+        return OVER_THE_EDGE * np.maximum(outside, 0.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,11 +89,11 @@ class ChainSearch:
         self._costs: Float = FIXED_COST + (1.0 - FIXED_COST) * np.abs(self._angles) / way.sweep
 
     def best(self, standing: Standing, slip: SwitchSlip, bounds: Bounds) -> Step | None:
-        """The first sweep of the cheapest chain; None where the robot is there, or every chain leads out."""
+        """The first sweep of the cheapest chain; None where the robot is there."""
         if self._way.is_there(np.array([standing.place]), np.array([standing.facing]))[0]:
             return None
         chains = self._begun(standing, slip, bounds)
-        best, first = OVER_THE_EDGE, -1
+        best, first = math.inf, 0
         for depth in range(DEPTH):
             total = chains.cost + self._way.sweeps(chains.place, chains.facing)
             cheapest = int(np.argmin(total))
@@ -99,8 +101,6 @@ class ChainSearch:
                 best, first = float(total[cheapest]), int(chains.first[cheapest])
             if depth + 1 < DEPTH:
                 chains = self._continued(_kept(chains, total), slip, bounds)
-        if first < 0:
-            return None
         switches, move = divmod(first, len(self._angles))
         return Step(bool(switches), float(self._angles[move]), best)
 

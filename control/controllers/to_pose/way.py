@@ -21,7 +21,7 @@ SIDEWAYS_SWEEPS = 4.0
 CENTRED = 0.5
 """What the edge of the tolerance costs against its middle, in sweeps: less than any sweep."""
 EAGER = 1.2
-"""What is left counts for more than the sweeps that it would take at best, so that every chain that gains is worth it."""
+"""What is left counts for more than the sweeps that it would take at best, so that it pays to go there."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,9 +61,7 @@ class WayToGo:
     def _turning(self, place: Complex, facing: Complex) -> Float:
         """Turn, walk, turn; the walk leads to the origin, with the robot facing it or its back to it."""
         towards = np.where(place == 0.0, 1.0, -place)
-        turns = [
-            np.abs(np.angle(way * facing.conj())) + np.abs(np.angle(way)) for way in (towards, -towards)
-        ]
+        turns = [np.abs(np.angle(way * facing.conj())) + np.abs(np.angle(way)) for way in (towards, -towards)]
         return np.minimum(*turns) / self.sweep + np.abs(place) / self.advance
 
     def _sideways(self, place: Complex, turn: Float) -> Float:

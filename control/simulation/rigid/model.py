@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import math
 
-import mujoco
-
-from control.simulation.rigid.parameters import NOMINAL_FIELD, RigidParameters
+from control.simulation.rigid.parameters import GRAVITY, NOMINAL_FIELD, RigidParameters
 
 PER_METRE = 1e3
 """mm in 1 m."""
+MILLIGRAM = 1e-3
+"""g."""
 SUBSTEP = 2e-4
 """MuJoCo's time step, s."""
 BALL = 0.1
@@ -22,8 +22,9 @@ BAR_WIDTH, BAR_HEIGHT = 2.0, 1.0
 """Of the body, mm (assumed; they decide its inertia)."""
 CENTRE_HEIGHT = 0.5
 """Of the body's centre above the plate, mm (assumed)."""
-GRAVITY = 9810.0
-"""mm/s^2."""
+
+ADHESION_RANGE = 0.02
+"""How far adhesion reaches, mm (assumed). MuJoCo lets a foot that slides rise by some um, which must not free it."""
 
 FEET = ("a_back", "a_front", "b_back", "b_front")
 """The four balls: ends A and B; back and front, seen in the walking direction."""
@@ -34,18 +35,19 @@ FORCE_UNIT = 1e6
 """g mm/s^2 in 1 N."""
 
 
-def build_model(parameters: RigidParameters, length: float) -> mujoco.MjModel:
-    """length: between the feet, m."""
-    model = mujoco.MjModel.from_xml_string(model_xml(parameters, length * PER_METRE))
-    model.dof_damping[3:6] = _damping(parameters, length)
-    return model
+def rotational_damping(parameters: RigidParameters, length: float) -> float:
+    """g mm^2/s, the same about all axes: 2 zeta sqrt(I m B), of swinging freely about the nominal field.
 
-
-def _damping(parameters: RigidParameters, length: float) -> float:
-    """Of rotations, g mm^2/s: 2 zeta sqrt(I m B), for the swinging about the field at its nominal strength."""
-    inertia = bar_inertia(parameters.mass_mg * 1e-3, length * PER_METRE)[2]
-    stiffness = parameters.moment_mA_m2 * 1e-3 * NOMINAL_FIELD * TORQUE_UNIT
+    length: between the feet, m. About a foot the body is four times as inert, and damped half as much.
+    """
+    inertia = bar_inertia(parameters.mass_mg * MILLIGRAM, length * PER_METRE)[2]
+    stiffness = _moment(parameters) * NOMINAL_FIELD
     return 2.0 * (parameters.damping_percent / 100.0) * math.sqrt(inertia * stiffness)
+
+
+def _moment(parameters: RigidParameters) -> float:
+    """nN m/T."""
+    return parameters.moment_mA_m2 * 1e-3 * TORQUE_UNIT
 
 
 def balls(parameters: RigidParameters, length: float) -> list[tuple[float, float, float]]:
@@ -61,15 +63,18 @@ def bar_inertia(mass: float, length: float) -> tuple[float, float, float]:
 
 
 def model_xml(parameters: RigidParameters, length: float) -> str:
-    """length: mm. The magnet is two opposite charges at the feet's distance, so that the field's forces on them add
-    up to the torque m x B exactly, at the attitude of each moment; a charge is the moment over the distance."""
-    mass = parameters.mass_mg * 1e-3
+    """length: between the feet, m.
+
+    The magnet is two opposite charges at the feet's distance, so that the field's forces on them add up to the
+    torque m x B exactly, at the attitude of each moment; a charge is the moment over the distance.
+    """
+    mass, length = parameters.mass_mg * MILLIGRAM, length * PER_METRE
     inertia = " ".join(f"{value!r}" for value in bar_inertia(mass, length))
-    charge = parameters.moment_mA_m2 * 1e-3 * TORQUE_UNIT / length
+    charge = _moment(parameters) / length
     return f"""
 <mujoco model="pivot walker">
   <option timestep="{SUBSTEP}" integrator="implicitfast" solver="Newton" cone="elliptic" impratio="10"
-          jacobian="dense" gravity="0 0 -{GRAVITY}"/>
+          jacobian="dense" gravity="0 0 -{GRAVITY * PER_METRE}"/>
   <worldbody>
     <geom name="plate" type="plane" size="100 100 1" contype="0" conaffinity="0"/>
     <site name="world"/>
@@ -105,7 +110,7 @@ def _foot(end: str, along: float, width: float) -> str:
 
 def _pair(foot: str, friction: float) -> str:
     return (
-        f'<pair geom1="plate" geom2="{foot}" condim="3" solref="0.001 1"'
+        f'<pair geom1="plate" geom2="{foot}" condim="3" solref="0.001 1" gap="{ADHESION_RANGE}"'
         f' friction="{friction} {friction} 0 0 0"/>'
     )
 

@@ -100,3 +100,8 @@ class RigidParameters(Parameters):
         """Elevation of the field from which the free end lifts, Lambda sin a = 1, rad; infinite if it never does."""
         ratio = self.magnetic_ratio(length, field)
         return math.asin(1.0 / ratio) if ratio > 1.0 else math.inf
+
+    def with_magnetic_ratio(self, ratio: float, length: float) -> RigidParameters:
+        """The same robot with the magnet that gives it this Lambda at the nominal field. length: m."""
+        moment = self.moment_mA_m2 * ratio / self.magnetic_ratio(length)
+        return RigidParameters.model_validate({**self.model_dump(), "moment_mA_m2": moment})

@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
-
-import mujoco
-import numpy as np
 
 from control.model import PIVOT_A, PIVOT_B, Pivot, Pose, wrap
 from control.simulation.plant import PlantCounters
-from control.simulation.rigid.model import BALL, CENTRE_HEIGHT, PER_METRE, SUBSTEP, balls, build_model
+from control.simulation.rigid.attitude import Attitude
+from control.simulation.rigid.engine import Engine
+from control.simulation.rigid.model import BALL, CENTRE_HEIGHT, PER_METRE, SUBSTEP, balls
 from control.simulation.rigid.parameters import RigidParameters
 from control.simulation.rigid.plate import Plate
 from control.snapshot import ZERO, Vector
@@ -46,11 +43,9 @@ class RigidPlant:
         self.parameters = parameters
         self.length = length
         self.plate = Plate(parameters, seed)
-        self._model = build_model(parameters, length)
-        self._data = mujoco.MjData(self._model)
-        self._pair_friction = self._model.pair_friction
-        self._control, self._state = self._data.ctrl, self._data.qpos
+        self.engine = Engine(parameters, length)
         self._balls = balls(parameters, length)
+        self._laid: list[float] = []
         self._switches = 0
         self._turned = self._slipped = 0.0
         self._pivot: Pivot = PIVOT_A
@@ -80,32 +75,29 @@ class RigidPlant:
         """slipped: how far the pressed end has slid over the plate, m."""
         return PlantCounters(self._switches, self._turned, self._slipped)
 
-    @property
-    def model(self) -> mujoco.MjModel:
-        return self._model
-
-    @property
-    def data(self) -> mujoco.MjData:
-        return self._data
-
     def place(self, pose: Pose) -> None:
         """Lay the robot down flat and still at `pose`."""
         if not pose.is_finite:
             raise ValueError(f"the robot can only be placed at a finite pose (m, m, rad), got {pose}")
-        mujoco.mj_resetData(self._model, self._data)
-        half = 0.5 * pose.heading
-        place = pose.x * PER_METRE, pose.y * PER_METRE, CENTRE_HEIGHT
-        self._state[:] = (*place, math.cos(half), 0.0, 0.0, math.sin(half))
-        self._control[6:] = 1.0
         self._field: Vector = ZERO
         self._is_resting, self._is_pulled = True, False
         self._owed = 0.0
         self._substeps = 0
-        self._heading = pose.heading
         self._foot: tuple[float, float] | None = None
-        self._look()
+        self._heading = pose.heading
+        self._laid = []
+        self.engine.reset()
+        self._lie_at(pose, CENTRE_HEIGHT)
         # Adhesion holds only what touches, so the feet must have sunk in before a field comes.
-        mujoco.mj_step(self._model, self._data, SINKING)
+        self.engine.advance(SINKING)
+        self._lie_at(pose, float(self.engine.state[2]))
+
+    def _lie_at(self, pose: Pose, height: float) -> None:
+        """height: of the centre, mm."""
+        half = 0.5 * pose.heading
+        place = pose.x * PER_METRE, pose.y * PER_METRE, height
+        self.engine.state[:] = (*place, math.cos(half), 0.0, 0.0, math.sin(half))
+        self.engine.speed[:] = 0.0
         self._look()
 
     def step(self, field: Vector, dt: float) -> None:
@@ -115,7 +107,7 @@ class RigidPlant:
         if self._is_resting and not self._is_pulled:
             return
         self._field = field if self._is_pulled else ZERO
-        self._control[0:3] = self._control[3:6] = self._field
+        self.engine.set_field(self._field)
         self._is_resting = False
         self._owed += dt
         # A millionth of a substep: 0.001 s / 0.2 ms must be 5, though it may round to less.
@@ -123,7 +115,7 @@ class RigidPlant:
         self._owed -= due * SUBSTEP
         while due > 0 and not self._is_resting:
             count = min(due, LOOK - self._substeps % LOOK)
-            mujoco.mj_step(self._model, self._data, count)
+            self.engine.advance(count)
             due -= count
             self._substeps += count
             if self._substeps % LOOK == 0:
@@ -131,7 +123,7 @@ class RigidPlant:
 
     def _look(self) -> None:
         """Take the pose from the body's state, and give the feet the friction of where they are."""
-        state = self._state.tolist()
+        state = self.engine.state.tolist()
         if not all(map(math.isfinite, state)):
             raise Diverged(
                 f"the rigid robot's motion is no number any more ({self.parameters}); "
@@ -171,45 +163,12 @@ class RigidPlant:
             self._foot = None
 
     def _watch_rest(self) -> None:
-        if float(np.abs(self._data.qvel).max()) < AT_REST:
+        if max(map(abs, self.engine.speed.tolist())) < AT_REST:
             self._is_resting = True
             self._owed = 0.0
 
     def _lay_friction(self, body: Attitude) -> None:
-        for pair, place in enumerate(self._balls):
-            self._pair_friction[pair, :2] = self.plate.friction_at(*body.at(*place))
-
-
-@dataclass(frozen=True, slots=True)
-class Attitude:
-    """Where the body is: its centre, mm, and its axes across and along as rows of numbers (world frame)."""
-
-    x: float
-    y: float
-    across: Vector
-    along: Vector
-    up: Vector
-
-    @classmethod
-    def of(cls, state: Sequence[float]) -> Attitude:
-        """state: position, mm, and unit quaternion, as MuJoCo keeps them."""
-        x, y, _, w, i, j, k = state
-        across = 1.0 - 2.0 * (j * j + k * k), 2.0 * (i * j + w * k), 2.0 * (i * k - w * j)
-        along = 2.0 * (i * j - w * k), 1.0 - 2.0 * (i * i + k * k), 2.0 * (j * k + w * i)
-        up = 2.0 * (i * k + w * j), 2.0 * (j * k - w * i), 1.0 - 2.0 * (i * i + j * j)
-        return cls(x, y, across, along, up)
-
-    @property
-    def heading(self) -> float:
-        """Of the axis across, which points in the walking direction, rad."""
-        return math.atan2(self.across[1], self.across[0])
-
-    @property
-    def pitch(self) -> float:
-        """Elevation of end A over end B, rad."""
-        return math.asin(max(-1.0, min(1.0, self.along[2])))
-
-    def at(self, x: float, y: float, z: float) -> tuple[float, float]:
-        """Where a point of the body is on the plate, mm."""
-        (ax, ay, _), (bx, by, _), (cx, cy, _) = self.across, self.along, self.up
-        return self.x + ax * x + bx * y + cx * z, self.y + ay * x + by * y + cy * z
+        laid = [self.plate.friction_at(*body.at(*place)) for place in self._balls]
+        if laid != self._laid:
+            self._laid = laid
+            self.engine.friction[:, 0] = self.engine.friction[:, 1] = laid

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from control.studies.analysis.intervals import LEVEL, NAN, Interval
+from control.studies.analysis.intervals import LEVEL, Interval
 from control.studies.analysis.samples import Samples
 from control.studies.analysis.spline import smoother
 
@@ -79,14 +79,25 @@ class _Levels:
 def _levels(samples: Samples, axis: str) -> tuple[Array, Array, Array, Array]:
     """Level, mean, standard error (0: unknown) and its degrees of freedom, for each level with finished runs.
 
-    Only the other axes' points that were measured at every level take part: a missing set would shift a mean.
+    Only the other axes' points that were measured at every level take part: a missing set would shift a mean. Where
+    there is no such point, all take part.
     """
-    rows = []
-    for level in samples.levels(axis):
-        groups = [group for group in samples.only({axis: level}).groups() if len(group)]
-        if groups:
-            rows.append((float(level), *_mean(groups)))
+    measured: dict[Any, dict[Any, Array]] = {}
+    for point, level, group in zip(_rest(samples, axis), samples.column(axis), samples.groups(), strict=True):
+        if len(group):
+            measured.setdefault(level, {})[point] = group
+    everywhere = set[Any].intersection(*(set(found) for found in measured.values())) if measured else set()
+    rows = [
+        (float(level), *_mean([found[point] for point in sorted(everywhere & set(found) or found, key=str)]))
+        for level, found in sorted(measured.items())
+    ]
     return tuple(np.array(rows, dtype=float).reshape(-1, 4).T)  # pyright: ignore[reportReturnType]
+
+
+def _rest(samples: Samples, axis: str) -> list[tuple[Any, ...]]:
+    """Each set's values of the other axes."""
+    at = samples.axes.index(axis)
+    return [point[:at] + point[at + 1 :] for point in samples.points]
 
 
 def _mean(groups: Sequence[Array]) -> tuple[float, float, float]:
@@ -149,8 +160,3 @@ def _kind(levels: _Levels, x: Array, at: int, where: Interval) -> Kind:
     if x[-1] - x[at] <= EDGE * span:
         return Kind.UPPER_EDGE
     return Kind.INSIDE
-
-
-def nowhere(axis: str) -> Optimum:
-    """Nothing was measured."""
-    return Optimum(axis, {}, Interval(NAN), Interval(NAN), Kind.UNKNOWN, NAN, np.empty(0), np.empty(0))

@@ -13,6 +13,11 @@ from numpy.typing import NDArray
 ME = "normalized_mean_error"
 """The paper's ME: mean distance from the reference over the length of the robot."""
 
+MOST_LEVELS = 15
+"""An axis with more levels is one of scattered points, as of a Latin hypercube or a search."""
+FILLED = 0.5
+"""A design with fewer sets than this share of all combinations of its levels is scattered, not a grid."""
+
 
 class Row(Protocol):
     """What is read of a row of a study's table; metrics and values by their names, lab units."""
@@ -69,6 +74,15 @@ class Samples:
     def varied(self) -> tuple[str, ...]:
         """The axes that take more than one value."""
         return tuple(axis for axis in self.axes if len(self.levels(axis)) > 1)
+
+    @property
+    def scattered(self) -> bool:
+        """Whether the sets are no grid."""
+        varied = self.varied()
+        levels = [len(self.levels(axis)) for axis in varied]
+        if any(count > MOST_LEVELS for count in levels):
+            return True
+        return len(varied) > 1 and len(self.points) < FILLED * math.prod(levels)
 
     def numbers(self, axis: str) -> NDArray[np.float64]:
         """Each set's value of a numeric axis."""

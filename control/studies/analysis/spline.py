@@ -11,11 +11,13 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
+from scipy.interpolate import BarycentricInterpolator, CubicSpline
 
 Array = NDArray[np.float64]
 SMOOTHNESSES = 10.0 ** np.arange(-6.0, 4.01, 0.25)
 """Tried, times the natural scale of the problem; 0 (through every mean) is tried too."""
+FEWEST_SMOOTHED = 5
+"""Knots; fewer are joined by the parabola or cubic through them: smoothing would bend them towards a straight line."""
 FINE = 401
 """Points of the line over its whole range."""
 
@@ -35,6 +37,8 @@ class Smoother:
 def smoother(x: Array, means: Array, errors: Array) -> Smoother:
     """x: (k,) ascending, at least 3.  means, errors: (k,) means and their standard errors, 0 where unknown."""
     fine = np.linspace(x[0], x[-1], FINE)
+    if len(x) < FEWEST_SMOOTHED:
+        return Smoother(fine, BarycentricInterpolator(x, np.eye(len(x)))(fine))
     between = CubicSpline(x, np.eye(len(x)), axis=0, bc_type="natural")(fine)
     if not np.all(errors > 0.0):
         return Smoother(fine, between)

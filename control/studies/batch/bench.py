@@ -9,13 +9,12 @@ hold a current back, in the corners of the plate, the direction stays too and th
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-
-from control.backlash import ENGAGED_AFTER, Backlash
+from control.backlash import ENGAGED_AFTER, Backlash, pull_after
 from control.field import Corner
 from control.field_model import FieldModel
 from control.gait import Gait
 from control.model import PIVOT_A, TURN, Pose, wrap
+from control.simulation.plant import SlipPlant
 from control.simulation.plants import Plant
 from control.snapshot import Vector
 from control.walker import Stride
@@ -24,42 +23,38 @@ WHOLE_STEPS = 1e-6
 """A piece that is longer than whole steps by rounding alone, in steps, gets no further one."""
 
 
-@dataclass(frozen=True, slots=True)
-class BatchRig:
-    """What a rig file says and a study does not; the defaults are those of the shipped rig file.
-
-    length: between the pivots, m.  workspace: half the side of the square for paths, m.
-    edge: half the side of the square that the robot may not leave, m.  ramp: a full change of pivot, s.
-    rate: ticks per second.  step: longest time for which the robot's field is taken as constant, s.
-    rest: how long the field stands still before the walk begins, s.
-    """
-
-    length: float = 0.010
-    workspace: float = 0.060
-    edge: float = 0.062
-    ramp: float = 0.050
-    rate: float = 60.0
-    step: float = 1e-3
-    rest: float = 0.1
-
-
-RIG = BatchRig()
+RATE = 60.0
+"""Ticks per second: the camera's pictures on the shipped rig."""
+TICK = 1.0 / RATE
+STEP = 1e-3
+"""Longest time for which the robot's field is taken as constant, s: the board's tick and the simulated world's."""
+REST = 0.1
+"""How long the field stands still before the walk begins, s: twice what a plant needs to see that it is settled."""
+OVERSHOOT = 0.002
+"""So far beyond the workspace's edge a rig lets the centre go before it holds, m: the rig file's soft margin."""
+WHOLE_STEPS = 1e-6
+"""A piece that is longer than whole steps by rounding alone, in steps, gets no further one."""
 
 
 class Bench:
     """Robot and field; `advance` moves both, `obey` is a drive command, `lead` is what the walker asks for."""
 
-    def __init__(self, plant: Plant, gait: Gait, rig: BatchRig) -> None:
-        self.field = FieldModel(rig.ramp, math.inf)
+    def __init__(self, plant: Plant, gait: Gait, ramp: float) -> None:
+        """ramp: of the elevation, for a full change of pivot, s."""
+        self.field = FieldModel(ramp, math.inf)
         self.pose = plant.pose
         self._plant = plant
         self._gait = gait
-        self._step = rig.step
         self._backlash = Backlash()
         self._pull = 0.0
         self.field.start(0.0, self.pose.heading, PIVOT_A, gait.tilt, gait.field)
         self._corner = self.field.trace().corners[-1]
-        self._follow(self._corner, rig.step)
+        self._follow(self._corner, STEP)
+
+    @property
+    def now(self) -> float:
+        """s; 0 is when the field came up."""
+        return self._corner.time
 
     def lead(self, direction: float) -> float:
         """How far the field has to go beyond the body's goal, as far as the walk has shown, rad."""
@@ -81,7 +76,7 @@ class Bench:
         """Lead the robot along a straight piece of the field's motion, in steps."""
         start, self._corner = self._corner, corner
         elapsed = corner.time - start.time
-        count = max(1, math.ceil(elapsed / self._step - WHOLE_STEPS))
+        count = max(1, math.ceil(elapsed / STEP - WHOLE_STEPS))
         for number in range(1, count + 1):
             share = number / count
             heading = start.heading + share * (corner.heading - start.heading)
@@ -89,11 +84,14 @@ class Bench:
             self._follow(Corner(corner.time, heading, elevation), elapsed / count)
 
     def _follow(self, corner: Corner, dt: float) -> None:
-        self._plant.step(_field(corner.heading, corner.elevation, self._gait.field), dt)
+        if isinstance(self._plant, SlipPlant):
+            self._plant.step_towards(corner.heading, corner.elevation, self._gait.field, dt)
+        else:
+            self._plant.step(_field(corner.heading, corner.elevation, self._gait.field), dt)
 
     def _see(self, angle: float) -> None:
         """The field has turned by `angle` (rad): while it surely pulls the body, its lead shows."""
-        self._pull = angle if angle * self._pull < 0.0 else self._pull + angle
+        self._pull = pull_after(self._pull, angle)
         if abs(self._pull) >= ENGAGED_AFTER:
             lag = wrap(self._corner.heading - self.pose.heading)
             self._backlash.observe(1 if self._pull > 0.0 else -1, lag)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import math
+import itertools
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -12,9 +12,9 @@ from control.metrics import Metrics
 from control.model import Pivot, Pose
 from control.runs import RunRequest
 from control.simulation.plants import build_plant
-from control.studies.batch.bench import RIG, BatchRig, Bench
+from control.studies.batch.bench import OVERSHOOT, REST, TICK, Bench
 from control.studies.batch.outcome import RunFailed
-from control.trajectories.trajectory import Path
+from control.studies.start import along
 from control.walk import Walk
 from control.walker import ControllerFault
 
@@ -36,14 +36,14 @@ class Step:
 Watch = Callable[[Step], None]
 
 
-def plain_walk(run: PlannedRun, watch: Watch | None = None, rig: BatchRig = RIG) -> Metrics:
+def plain_walk(run: PlannedRun, watch: Watch | None = None) -> Metrics:
     """The figures of one run; raises `RunFailed` where a rig would have ended it, and what a bad choice raises."""
-    start = start_of(run)
-    bench = Bench(build_plant(run.plant, rig.length, start, run.seed), run.selection.gait, rig)
-    bench.advance(rig.rest)
-    walk = _walk(run, bench, rig)
+    plant = build_plant(run.plant, run.setup.length, start_of(run), run.seed)
+    bench = Bench(plant, run.selection.gait, run.setup.ramp)
+    bench.advance(REST)
+    walk = _walk(run, bench)
     try:
-        _carry_out(walk, bench, rig, watch)
+        _carry_out(walk, bench, run.setup.workspace, watch)
     except ControllerFault as fault:
         raise RunFailed(str(fault)) from fault
     return walk.metrics()
@@ -51,43 +51,38 @@ def plain_walk(run: PlannedRun, watch: Watch | None = None, rig: BatchRig = RIG)
 
 def start_of(run: PlannedRun) -> Pose:
     """Where the robot begins: as planned, else at the path's first point and along the path."""
-    return run.start if run.start is not None else beginning(run.selection.build_trajectory())
+    if run.start is not None:
+        return run.start
+    path = run.selection.build_trajectory()
+    return Pose(*path.point(0.0), along(path))
 
 
-def beginning(path: Path) -> Pose:
-    """The path's first point (m), and the heading along it there (rad)."""
-    x, y = path.point(0.0)
-    ahead = path.point(1e-3 * path.duration)
-    return Pose(x, y, math.atan2(ahead[1] - y, ahead[0] - x))
-
-
-def _walk(run: PlannedRun, bench: Bench, rig: BatchRig) -> Walk:
+def _walk(run: PlannedRun, bench: Bench) -> Walk:
     request = RunRequest(run.selection, run.passes, run.duration)
-    walk = Walk("", request, rig.length, bench.field.pivot, bench.pose)
-    walk.workspace = rig.workspace
-    walk.gait_model = GaitModel(rig.length, switch_time=rig.ramp)
+    walk = Walk("", request, run.setup.length, bench.field.pivot, bench.pose)
+    walk.workspace = run.setup.workspace
+    walk.gait_model = GaitModel(run.setup.length, switch_time=run.setup.ramp)
     return walk
 
 
-def _carry_out(walk: Walk, bench: Bench, rig: BatchRig, watch: Watch | None) -> None:
-    tick, period = 0, 1.0 / rig.rate
-    while True:
-        now = rig.rest + tick * period
-        stride = walk.step(now, period, bench.pose, bench.field, bench.lead)
+def _carry_out(walk: Walk, bench: Bench, workspace: float, watch: Watch | None) -> None:
+    for tick in itertools.count():
+        if tick:
+            bench.advance(REST + tick * TICK)
+            require_inside(bench.pose.x, bench.pose.y, tick, workspace)
+        stride = walk.step(bench.now, TICK, bench.pose, bench.field, bench.lead)
         bench.obey(stride)
         if watch is not None:
             watch(Step(walk.elapsed, bench.pose, walk.reference, stride.pivot, bench.field.heading))
         if walk.is_over:
             return
-        tick += 1
-        bench.advance(rig.rest + tick * period)
-        check_inside_edge(bench.pose.x, bench.pose.y, walk.elapsed, rig.edge)
 
 
-def check_inside_edge(x: float, y: float, elapsed: float, edge: float) -> None:
-    """A rig holds a robot that would leave the plate; raises `RunFailed`."""
+def require_inside(x: float, y: float, tick: int, workspace: float) -> None:
+    """A rig holds a robot that would leave the plate; raises `RunFailed`. x, y, workspace (half its side): m."""
+    edge = workspace + OVERSHOOT
     if not (abs(x) <= edge and abs(y) <= edge):
         raise RunFailed(
-            f"the robot left the workspace after {elapsed:.1f} s, at ({1e3 * x:.1f}, {1e3 * y:.1f}) mm; "
-            f"±{1e3 * edge:g} mm are allowed"
+            f"the robot left the workspace after {tick * TICK:.1f} s, at ({1e3 * x:.1f}, {1e3 * y:.1f}) mm; "
+            f"±{1e3 * workspace:g} mm are allowed"
         )

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from control.metrics import Metrics
+from control.studies.batch.compiled import prepared, walk_prepared
 from control.studies.batch.outcome import Failed, RunFailed
 from control.studies.batch.plain import plain_walk
 
@@ -20,7 +21,8 @@ def simulate(runs: Sequence[PlannedRun]) -> list[Metrics | Failed]:
 
 def _figures(run: PlannedRun) -> Metrics | Failed:
     try:
-        return plain_walk(run)
+        compiled = prepared(run)
+        return plain_walk(run) if compiled is None else walk_prepared(compiled)
     except RunFailed as failed:
         return Failed(str(failed))
     except Exception as error:  # noqa: BLE001 (controllers and paths may be anyone's code)

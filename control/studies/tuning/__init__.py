@@ -1,4 +1,4 @@
-"""Auto-tune: the best values of some axes for this robot and plate, by Bayesian optimisation within a budget of runs."""
+"""Auto-tune: the best values of some axes for this robot and plate, by Bayesian optimisation within a budget."""
 
 from control.studies.tuning.answer import Answer, Interval, answer
 from control.studies.tuning.plan import TunePlan

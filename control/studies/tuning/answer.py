@@ -64,7 +64,7 @@ def answer(definition: StudyDefinition, rows: Mapping[int, StudyRow]) -> Answer 
     point = last[0].point if last else tuner.best(before)
     measured = np.array([trial.error for trial in last if trial.error is not None])
     return Answer(
-        values=dict(point),
+        values=tuner.space.values(point),
         metric=definition.tune.minimise,
         expected=_expected(tuner, model, point),
         measured=_measured(measured) if len(measured) else None,

@@ -10,13 +10,14 @@ the same model.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from scipy.optimize import minimize
 from sklearn.gaussian_process import GaussianProcessRegressor
-from sklearn.gaussian_process.kernels import ConstantKernel, Kernel, Matern, WhiteKernel
+from sklearn.gaussian_process.kernels import ConstantKernel, Matern, WhiteKernel
 from threadpoolctl import threadpool_limits
 
 from control.studies.tuning.space import Floats
@@ -66,10 +67,9 @@ class ErrorModel:
             self._signal, self._noise = kernel.k1, float(kernel.k2.noise_level)
             self._process = self._conditioned()
 
-    def _conditioned(self) -> GaussianProcessRegressor:
+    def _conditioned(self) -> Any:
         """The latent process: the scatter is on the data and not in the prediction."""
-        process = GaussianProcessRegressor(self._signal, alpha=self._noise, optimizer=None)
-        return process.fit(self._places, self._targets)
+        return _process(self._signal, self._noise).fit(self._places, self._targets)
 
     def believe(self, places: Floats) -> Belief:
         with threadpool_limits(1):
@@ -98,10 +98,15 @@ class ErrorModel:
         return np.exp(log + self.scatter**2 / 2)
 
 
-def _most_probable(places: Floats, targets: Floats) -> Kernel:
+def _process(kernel: Any, scatter: float = 1e-10) -> Any:
+    """With the kernel as it is. scatter: variance of each run beyond what is in the kernel."""
+    fixed: Any = None
+    return GaussianProcessRegressor(kernel, alpha=scatter, optimizer=fixed)
+
+
+def _most_probable(places: Floats, targets: Floats) -> Any:
     """Lengths, strength and scatter of the highest posterior."""
-    process = GaussianProcessRegressor(_kernel(places.shape[1], BEGINNINGS[0]), optimizer=None)
-    process.fit(places, targets)
+    process = _process(_kernel(places.shape[1], BEGINNINGS[0])).fit(places, targets)
 
     def unlikely(theta: Floats) -> tuple[float, Floats]:
         likelihood, slope = process.log_marginal_likelihood(theta, eval_gradient=True, clone_kernel=False)
@@ -113,13 +118,13 @@ def _most_probable(places: Floats, targets: Floats) -> Kernel:
     return starts[0].clone_with_theta(min(found, key=lambda result: result[0])[1])
 
 
-def _descended(unlikely: object, start: Kernel) -> tuple[float, Floats]:
+def _descended(unlikely: Callable[[Floats], tuple[float, Floats]], start: Any) -> tuple[float, Floats]:
     result = minimize(unlikely, start.theta, jac=True, bounds=start.bounds, method="L-BFGS-B")
     return float(result.fun), result.x
 
 
-def _kernel(coordinates: int, length: float) -> Kernel:
-    lengths: Sequence[float] = [length] * coordinates
+def _kernel(coordinates: int, length: float) -> Any:
+    lengths: Any = [length] * coordinates
     smooth = Matern(lengths, LENGTH_BOUNDS, nu=SMOOTHNESS)
     return ConstantKernel(STRENGTH, STRENGTH_BOUNDS) * smooth + WhiteKernel(SCATTER, SCATTER_BOUNDS)
 

@@ -6,19 +6,16 @@ their index; neither timing nor the number of workers has a say, and an interrup
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from control.studies.definition import StudyDefinition
-from control.studies.plan import PlannedRun, planned_run
-from control.studies.table import StudyRow
+from control.studies.plan import NOTHING, Done, PlannedRun, planned_run
 from control.studies.tuning.space import Point
 from control.studies.tuning.trials import Trial, trials
 from control.studies.tuning.tuner import Tuner
 
 PERCENT = 100.0
-
-Rows = Mapping[int, StudyRow]
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,25 +45,25 @@ class TunePlan:
     def axes(self) -> tuple[str, ...]:
         return tuple(axis.name for axis in self._tuner.space.axes)
 
-    def next(self, done: Rows) -> Sequence[int]:
+    def next(self, done: Done) -> Sequence[int]:
         block = self.blocks(done)[-1]
         return [index for index in block.indices if index not in done]
 
-    def run(self, index: int, done: Rows) -> PlannedRun:
+    def run(self, index: int, done: Done = NOTHING) -> PlannedRun:
         """Raises `IndexError` for a run that cannot be known yet."""
         for block in self.blocks(done):
             if index in block.indices:
                 return self._planned(index, block, done)
         raise IndexError(f"run {index} of the tuning is chosen when the runs before it are done")
 
-    def blocks(self, done: Rows) -> list[Block]:
+    def blocks(self, done: Done) -> list[Block]:
         """Up to the first one that is not done."""
         blocks = [self._block(0, done)]
         while not blocks[-1].confirms and all(index in done for index in blocks[-1].indices):
             blocks.append(self._block(blocks[-1].indices.stop, done))
         return blocks
 
-    def _block(self, start: int, done: Rows) -> Block:
+    def _block(self, start: int, done: Done) -> Block:
         """start: index of its first run; all before it are done."""
         settings = self._settings
         left = settings.budget - settings.confirm - start
@@ -75,19 +72,19 @@ class TunePlan:
         points = settings.at_once if start else settings.first
         return Block(range(start, start + min(points * self._definition.repeats, left)), confirms=False)
 
-    def _is_enough(self, start: int, done: Rows) -> bool:
+    def _is_enough(self, start: int, done: Done) -> bool:
         """Whether so little improvement is expected that the search ends before its budget."""
         enough = self._settings.enough_percent / PERCENT
         return start > 0 and enough > 0 and self._tuner.proposal(self._tried(start, done)).gain < enough
 
-    def _planned(self, index: int, block: Block, done: Rows) -> PlannedRun:
+    def _planned(self, index: int, block: Block, done: Done) -> PlannedRun:
         if index in done:
             row = done[index]
             return planned_run(self._definition, index, row.set, row.repeat, dict(row.values))
         before, ahead = self._tried(block.indices.start, done), index - block.indices.start
         points = self._points(block, before)[: ahead + 1]
         set_, repeat = _numbered(before, points)
-        return planned_run(self._definition, index, set_, repeat, dict(points[-1]))
+        return planned_run(self._definition, index, set_, repeat, self._tuner.space.values(points[-1]))
 
     def _points(self, block: Block, before: Sequence[Trial]) -> list[Point]:
         """One a run. Every point has its turn before the first is repeated, so that drift is shared evenly."""
@@ -97,7 +94,7 @@ class TunePlan:
         points = self._tuner.proposal(before).points
         return [points[number % len(points)] for number in range(runs)]
 
-    def _tried(self, start: int, done: Rows) -> list[Trial]:
+    def _tried(self, start: int, done: Done) -> list[Trial]:
         return trials([done[index] for index in range(start)], self._settings.minimise)
 
 

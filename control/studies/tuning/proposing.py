@@ -82,5 +82,5 @@ def _around(space: Space, point: Point, reach: float, seed: int) -> Floats:
 
 
 def _sobol(space: Space, count: int, seed: int) -> Floats:
-    rows = qmc.Sobol(len(space.axes), seed=seed).random_base2(max(count - 1, 0).bit_length())
+    rows = qmc.Sobol(len(space.axes), rng=seed).random_base2(max(count - 1, 0).bit_length())
     return rows[:count]

@@ -15,6 +15,10 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from control.studies.axes import Axis as StudyAxis
+from control.studies.axes import whole_as_int
+from control.studies.definition import StudyDefinition
+
 Floats = NDArray[np.float64]
 
 Point = tuple[tuple[str, Any], ...]
@@ -64,7 +68,7 @@ class Range:
     def value(self, share: float) -> float:
         decimals = -math.floor(math.log10((self.high - self.low) / FINENESS))
         number = round(self.low + share * (self.high - self.low), decimals)
-        return min(max(number, self.low), self.high)
+        return whole_as_int(min(max(number, self.low), self.high))
 
     def share(self, value: Any) -> float:
         return (float(value) - self.low) / (self.high - self.low)
@@ -134,6 +138,11 @@ class Space:
         values = {axis.name: axis.value(float(share)) for axis, share in zip(self.axes, shares, strict=True)}
         return point_of(values)
 
+    def values(self, point: Point) -> dict[str, Any]:
+        """By axis, in the order of the axes; lab units."""
+        values = dict(point)
+        return {axis.name: values[axis.name] for axis in self.axes}
+
     def shares(self, point: Point) -> Floats:
         """One an axis, 0-1."""
         values = dict(point)
@@ -167,4 +176,14 @@ def _thinned(values: Sequence[Any], most: int) -> list[Any]:
 
 
 def space_of(definition: StudyDefinition) -> Space:
-    ...
+    return Space(tuple(_axis(axis) for axis in definition.axes))
+
+
+def _axis(axis: StudyAxis) -> Axis:
+    choices = axis.choices
+    if choices is None:
+        assert axis.first is not None and axis.last is not None  # noqa: PT018
+        return Range(axis.of, axis.first, axis.last)
+    if all(isinstance(choice, int | float) and not isinstance(choice, bool) for choice in choices):
+        return Lattice(axis.of, tuple(sorted(choices, key=float)))
+    return Words(axis.of, tuple(choices))

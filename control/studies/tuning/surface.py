@@ -9,7 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from control.studies.definition import StudyDefinition, StudyError
+from control.studies.definition import StudyDefinition
+from control.studies.errors import StudyError
 from control.studies.table import StudyRow
 from control.studies.tuning.error_model import ErrorModel
 from control.studies.tuning.space import Axis, Floats, Point, Space, point_of
@@ -83,8 +84,8 @@ def learned_surface(
         marks=marks,
         mean=model.error(belief.mean).reshape(shape),
         deviation=(model.error(belief.mean) * belief.deviation).reshape(shape),
-        samples=tuple(Sample(dict(trial.point), trial.error) for trial in tried),
-        best=dict(best),
+        samples=tuple(Sample(tuner.space.values(trial.point), trial.error) for trial in tried),
+        best=tuner.space.values(best),
     )
 
 

@@ -29,17 +29,17 @@ def trials(rows: Iterable[StudyRow], metric: str) -> list[Trial]:
 
 
 def errors(tried: Sequence[Trial]) -> Floats:
-    """(trials,): a failed run counts like the worst that finished, so that its place is avoided.
+    """(trials,), above zero, as the model's logarithm wants them.
 
-    It is not made worse than that: one cliff would bend the model everywhere.
+    A failed run counts like the worst that finished, so that its place is avoided; no worse than that, since
+    one cliff would bend the model everywhere. Nothing at all, of a count, is half of the least there was.
     """
-    worst = max((trial.error for trial in tried if trial.error is not None), default=1.0)
-    return np.array([worst if trial.error is None else trial.error for trial in tried])
+    found = [trial.error for trial in tried if trial.error is not None]
+    worst = max(found, default=0.0) or 1.0
+    least = min((error for error in found if error > 0.0), default=1.0)
+    return np.array([worst if trial.error is None else trial.error or least / 2 for trial in tried])
 
 
 def _error(row: StudyRow, metric: str) -> float | None:
-    """The logarithm wants errors above zero; no run of a robot is exactly without error."""
-    error = row.metrics.get(metric)
-    if row.state != "finished" or error is None or not 0.0 < error < math.inf:
-        return None
-    return float(error)
+    error = row.metric(metric)
+    return error if 0.0 <= error < math.inf else None

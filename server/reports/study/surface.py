@@ -9,11 +9,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from control.studies.tuning.answer import NORMAL_95
 from control.studies.tuning.surface import Surface
 from server.reports.drawing import BLACK, BLUE, ORANGE, grid, label
-
-NORMAL_95 = 1.96
-"""Deviations of a normal distribution that 95 % lie within."""
+from server.reports.study.naming import axis_title, metric_title, short_metric
 
 LEVELS = 12
 """Steps of colour: few enough to find one again beside the picture."""
@@ -33,19 +32,19 @@ def _line(surface: Surface) -> Figure:
     _named(axes, marks)
     done = [sample for sample in surface.samples if sample.error is not None]
     across = [_place(marks, sample.values[name]) for sample in done]
-    axes.plot(across, [sample.error for sample in done], ".", color=BLACK, markersize=4, label="runs")
+    axes.plot(across, [sample.error or 0.0 for sample in done], ".", color=BLACK, markersize=4, label="runs")
     axes.axvline(_place(marks, surface.best[name]), color=ORANGE, linewidth=1.2, label="best")
     axes.legend(fontsize=8, frameon=False)
-    label(axes, name, surface.metric)
+    label(axes, axis_title(name), metric_title(surface.metric))
     return figure
 
 
 def _maps(surface: Surface) -> Figure:
     figure, axes = grid(1, 2, (10.0, 4.2))
-    titles = (f"expected {surface.metric}", "uncertainty of that (standard deviation)")
+    titles = (f"expected {short_metric(surface.metric)}", "uncertainty of that (standard deviation)")
     for one, heights, title in zip(axes, (surface.mean, surface.deviation), titles, strict=True):
         _map(figure, one, surface, heights)
-        label(one, surface.axes[0], surface.axes[1], title)
+        label(one, axis_title(surface.axes[0]), axis_title(surface.axes[1]), title)
     handles, labels = axes[0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=3, fontsize=8, frameon=False)
     return figure
@@ -53,12 +52,18 @@ def _maps(surface: Surface) -> Figure:
 
 def _map(figure: Figure, axes: Axes, surface: Surface, heights: np.ndarray) -> None:
     right, up = surface.marks
-    filled = axes.pcolormesh(_places(right), _places(up), heights, cmap="cividis", shading="nearest", rasterized=True)
+    filled = axes.pcolormesh(
+        _places(right), _places(up), heights, cmap="cividis", shading="nearest", rasterized=True
+    )
     figure.colorbar(filled, ax=axes).ax.tick_params(labelsize=8)
     for failed, mark, name in ((False, "o", "runs"), (True, "x", "failed runs")):
         _scatter(axes, surface, failed, mark, name)
-    best = [_place(marks, surface.best[name]) for name, marks in zip(surface.axes, surface.marks, strict=True)]
-    axes.plot(*best, "*", color=ORANGE, markeredgecolor="white", markersize=15, label="best", linestyle="none")
+    best = [
+        _place(marks, surface.best[name]) for name, marks in zip(surface.axes, surface.marks, strict=True)
+    ]
+    axes.plot(
+        *best, "*", color=ORANGE, markeredgecolor="white", markersize=15, label="best", linestyle="none"
+    )
     _named(axes, right, up)
 
 
@@ -71,7 +76,9 @@ def _scatter(axes: Axes, surface: Surface, failed: bool, mark: str, name: str) -
     ]
     if points:
         across, up = np.array(points).T
-        axes.plot(across, up, mark, color="white", markeredgecolor=BLACK, markersize=4, label=name, linestyle="none")
+        axes.plot(
+            across, up, mark, color="white", markeredgecolor=BLACK, markersize=4, label=name, linestyle="none"
+        )
 
 
 def _places(marks: Sequence[Any]) -> np.ndarray:

@@ -1,0 +1,1 @@
+"""Studies: many runs from one definition, as a batch or on a rig; no clock, no server in here."""

@@ -1,0 +1,83 @@
+"""What one worker is given at a time, and does: some runs, one after the other."""
+
+from __future__ import annotations
+
+import threading
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+from control import plugins
+from control.metrics import Metrics
+from control.studies.arithmetic import Ground, ground
+from control.studies.batch.outcome import Failed
+from control.studies.plan import PlannedRun
+
+Outcome = Metrics | Failed
+"""What comes of one run."""
+
+_loading = threading.Lock()
+_loaded: set[str] = set()
+
+
+class WorkersLost(Exception):
+    """Whoever does the work cannot go on; the text says why and what to do. What is done stays done."""
+
+
+@dataclass(frozen=True, slots=True)
+class Chunk:
+    """runs: in their order.  plugins: files of controllers and trajectories.  ground: what the results rest on."""
+
+    runs: tuple[PlannedRun, ...]
+    plugins: tuple[str, ...]
+    ground: Ground
+
+
+@dataclass(frozen=True, slots=True)
+class Done:
+    """One of each for every run, in the chunk's order. elapsed: how long it took, s."""
+
+    outcomes: tuple[Outcome, ...]
+    elapsed: tuple[float, ...]
+
+
+def chunk_of(runs: tuple[PlannedRun, ...]) -> Chunk:
+    """With all that a process elsewhere has to know."""
+    return Chunk(runs, tuple(str(path.resolve()) for path in plugins.loaded_files()), ground())
+
+
+def work(chunk: Chunk) -> Done:
+    """In a worker. Raises `WorkersLost` where this process would not give the results that are wanted."""
+    _get_ready(chunk)
+    from control.studies.batch import simulate
+
+    outcomes, elapsed = [], []
+    for run in chunk.runs:
+        began = time.perf_counter()
+        [outcome] = simulate([run])
+        outcomes.append(outcome)
+        elapsed.append(time.perf_counter() - began)
+    return Done(tuple(outcomes), tuple(elapsed))
+
+
+def _get_ready(chunk: Chunk) -> None:
+    if differences := chunk.ground.differences(ground()):
+        raise WorkersLost(
+            f"a worker is not like this program ({'; '.join(differences)}), so its results could differ; "
+            "install the same versions there"
+        )
+    with _loading:
+        _load_plugins(chunk.plugins)
+
+
+def _load_plugins(files: tuple[str, ...]) -> None:
+    present = {str(path.resolve()) for path in plugins.loaded_files()}
+    wanted = [file for file in files if file not in _loaded | present]
+    if wanted and not _loaded:
+        plugins.load_installed()
+    for file in wanted:
+        try:
+            plugins.load_file(Path(file))
+        except plugins.PluginError as error:
+            raise WorkersLost(f"a worker cannot use a plug-in: {error}") from error
+        _loaded.add(file)

@@ -1,0 +1,99 @@
+"""The figure of lines: a metric over one axis, with intervals."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import matplotlib
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from control.studies.analysis.curves import Curve, Panel, panels
+from control.studies.analysis.samples import Samples, is_number
+from server.reports.drawing import grid, label
+from server.reports.study.layout import MOST_LINES, MOST_PANELS, Layout, spread
+from server.reports.study.naming import axis_name, axis_title, short_metric, value_text
+
+WIDTH, HEIGHT = 3.3, 2.6
+"""Of one panel, inches."""
+MARKS = "osD^vP<>"
+ASIDE = 0.012
+"""Lines are set apart by this share of the axis, so that their intervals do not hide each other."""
+
+
+def lines(samples: Samples, layout: Layout) -> Figure:
+    """One panel for each value of the panel's axis; all share the scale of the metric."""
+    chosen = spread(panels(samples, layout.x, layout.line, layout.panel), MOST_PANELS)
+    rows, columns = shape(len(chosen))
+    size = (max(WIDTH * columns + 0.6, 5.6), max(HEIGHT * rows + 0.5, 3.4))
+    figure, axes = grid(rows, columns, size)
+    for one, panel in zip(axes, chosen, strict=False):
+        _panel(one, samples, layout, panel)
+    _share_scale(axes[: len(chosen)])
+    for spare in axes[len(chosen) :]:
+        spare.set_axis_off()
+    _legend(figure, axes[0], layout)
+    return figure
+
+
+def shape(count: int) -> tuple[int, int]:
+    """Rows and columns for so many panels."""
+    columns = min(count, 3 if count != 4 else 2)
+    return math.ceil(count / columns), columns
+
+
+def colours(count: int) -> list[Any]:
+    """From dark to light, in an order that survives print and most colour blindness."""
+    return list(matplotlib.colormaps["viridis"](np.linspace(0.0, 0.85, max(count, 1))))
+
+
+def _panel(axes: Axes, samples: Samples, layout: Layout, panel: Panel) -> None:
+    chosen = spread(panel.curves, MOST_LINES)
+    for place, (curve, colour) in enumerate(zip(chosen, colours(len(chosen)), strict=True)):
+        aside = ASIDE * (place - 0.5 * (len(chosen) - 1))
+        _curve(axes, samples, layout, curve, (colour, MARKS[place % len(MARKS)], aside))
+    title = "" if layout.panel is None else f"{axis_name(layout.panel)} {value_text(layout.panel, panel.value)}"
+    label(axes, axis_title(layout.x), short_metric(samples.metric), title)
+    axes.grid(axis="y", color="#e6e6e6", linewidth=0.6)
+    levels = samples.levels(layout.x)
+    if not samples.numeric(layout.x):
+        axes.set_xticks(range(len(levels)), [str(level) for level in levels], fontsize=8)
+        axes.margins(x=0.2)
+
+
+def _curve(
+    axes: Axes, samples: Samples, layout: Layout, curve: Curve, look: tuple[Any, str, float]
+) -> None:
+    colour, mark, aside = look
+    levels = samples.levels(layout.x)
+    span = float(levels[-1] - levels[0]) if samples.numeric(layout.x) else len(levels) - 1.0
+    x = np.array([_place(levels, value) for value in curve.x]) + aside * span
+    means = np.array([one.value for one in curve.means])
+    reach = np.array([[one.value - one.low, one.high - one.value] for one in curve.means]).T
+    axes.errorbar(
+        x, means, yerr=np.nan_to_num(reach), color=colour, marker=mark, markersize=3.5, linewidth=1.1,
+        elinewidth=0.9, capsize=1.5, linestyle="-" if samples.numeric(layout.x) else "none",
+        label="" if layout.line is None else value_text(layout.line, curve.value),
+    )  # fmt: skip
+
+
+def _place(levels: list[Any], value: Any) -> float:
+    return float(value) if all(is_number(level) for level in levels) else float(levels.index(value))
+
+
+def _share_scale(axes: list[Axes]) -> None:
+    limits = np.array([one.get_ylim() for one in axes])
+    low, high = float(limits[:, 0].min()), float(limits[:, 1].max())
+    for one in axes:
+        one.set_ylim(max(low, 0.0) if low > -0.05 * (high - low) else low, high)
+
+
+def _legend(figure: Figure, axes: Axes, layout: Layout) -> None:
+    handles, labels = axes.get_legend_handles_labels()
+    if layout.line is not None and handles:
+        figure.legend(
+            handles, labels, loc="outside lower center", ncols=min(len(labels), 8), fontsize=8, frameon=False,
+            title=axis_name(layout.line), title_fontsize=8,
+        )  # fmt: skip

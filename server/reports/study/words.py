@@ -1,0 +1,173 @@
+"""What was found, in sentences with intervals."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+
+from control.studies.analysis.comparison import Comparison, Order
+from control.studies.analysis.distribution import REFUSED
+from control.studies.analysis.drift import Drift
+from control.studies.analysis.optimum import FEWEST_LEVELS, Kind, Optimum
+from control.studies.analysis.sets import as_good_as_best
+from control.studies.analysis.whole import DISTRIBUTED, Analysis
+from control.studies.table import StudyTable
+from server.reports.study.naming import (
+    axis_name,
+    axis_unit,
+    chance_text,
+    number,
+    point_text,
+    short_metric,
+    value_text,
+    with_interval,
+)
+
+MATTERS = 0.01
+"""p below which an effect is called one: few enough false ones among a dozen terms. A choice."""
+MOST_NAMED = 4
+
+
+def sentences(found: Analysis, table: StudyTable) -> list[str]:
+    return [
+        *_counts(found, table),
+        *_best(found),
+        *(_optimum(found, one) for one in found.overall),
+        *_apart(found),
+        *_effects(found),
+        *_comparisons(found.comparisons),
+        *_distributions(found),
+        *([_drift(found, found.drift)] if found.drift is not None else []),
+    ]
+
+
+def _counts(found: Analysis, table: StudyTable) -> Iterator[str]:
+    sets = len(found.summaries)
+    yield f"{found.finished} runs in {sets} {'set' if sets == 1 else 'sets'} finished; {found.failed} failed."
+    reasons = Counter(row.reason for row in table.rows if row.state == "failed")
+    for reason, count in reasons.most_common(MOST_NAMED):
+        yield f"Failed, {count} times: {reason}. Failed runs are counted and in no mean."
+    unknown = sum(one.runs == 1 for one in found.summaries)
+    if unknown:
+        yield f"{unknown} of the sets have one finished run only: their means have no interval."
+
+
+def _best(found: Analysis) -> Iterator[str]:
+    best, metric = found.best, short_metric(found.samples.metric)
+    if best is None:
+        yield "No run has finished, so there is nothing to compare."
+        return
+    where = point_text({axis: best.values[axis] for axis in found.samples.varied()})
+    if not where:
+        yield f"{metric} is {with_interval(best.mean)}."
+        return
+    yield f"{metric} is smallest at {where}: {with_interval(best.mean)}."
+    others = len(as_good_as_best(found.summaries)) - 1
+    if others > 0:
+        yield f"The intervals of {others} other sets reach as low: the data do not part them from the best one."
+
+
+def _optimum(found: Analysis, one: Optimum) -> str:
+    metric, name, unit = short_metric(found.samples.metric), axis_name(one.axis), axis_unit(one.axis)
+    at = f" ({point_text(one.fixed)})" if one.fixed else ""
+    others = [axis for axis in found.samples.varied() if axis != one.axis and axis not in one.fixed]
+    mean = f", mean over {' and '.join(axis_name(axis) for axis in others)}" if others else ""
+    levels = found.samples.levels(one.axis)
+    span = f"{value_text(one.axis, levels[0])} to {value_text(one.axis, levels[-1])}"
+    begin = f"Over {name} {span}{at}{mean}: "
+    if one.kind is Kind.UNKNOWN:
+        why = f"{FEWEST_LEVELS} levels" if len(one.line_x) < FEWEST_LEVELS else "repeats of every set"
+        return f"{begin}the best level is {value_text(one.axis, one.measured)}; an optimum between levels needs {why}."
+    where, value = with_interval(one.where, unit), with_interval(one.value)
+    if one.kind is Kind.FLAT:
+        return f"{begin}{metric} is flat; where it is smallest cannot be told ({where})."
+    if one.kind is Kind.INSIDE:
+        return f"{begin}{metric} is smallest at {where}, where it is {value}."
+    return (
+        f"{begin}{metric} is smallest {one.kind.value} of what was tried, {where}, where it is {value}; "
+        "a better value may lie beyond."
+    )
+
+
+def _apart(found: Analysis) -> Iterator[str]:
+    """In how many combinations of the other axes the optimum lies where."""
+    for axis in dict.fromkeys(one.axis for one in found.apart):
+        each = [one for one in found.apart if one.axis == axis]
+        kinds = Counter(one.kind for one in each)
+        parts = ", ".join(f"{kind.value} in {count}" for kind, count in kinds.most_common())
+        inside = sorted(one.where.value for one in each if one.kind is Kind.INSIDE)
+        ends = f"; the inner ones lie from {_ends(axis, inside)}" if inside else ""
+        others = len(each)
+        yield f"Along {axis_name(axis)} at each of the {others} combinations of the others, the optimum is {parts}{ends}."
+
+
+def _ends(axis: str, ascending: Sequence[float]) -> str:
+    return f"{value_text(axis, round(ascending[0], 3))} to {value_text(axis, round(ascending[-1], 3))}"
+
+
+def _effects(found: Analysis) -> Iterator[str]:
+    metric = short_metric(found.samples.metric)
+    if found.effects is not None:
+        told = [one for one in found.effects.effects if one.p < MATTERS]
+        parts = [
+            f"{' with '.join(axis_name(axis) for axis in one.axes)} {_percent(one.share.value)} "
+            f"({_percent(one.share.low)} to {_percent(one.share.high)})"
+            for one in told[:MOST_NAMED]
+        ]
+        if parts:
+            yield (
+                f"Of the variance of {metric}, so much goes with: {'; '.join(parts)}. "
+                f"Runs of the same set differ by {_percent(found.effects.noise)}."
+            )
+        else:
+            yield f"No axis has an effect on {metric} that could be told from the scatter of the runs."
+    if found.influences:
+        told = [one for one in found.influences if min(one.p, one.p_monotone) < MATTERS]
+        parts = [
+            f"{axis_name(one.axis)} {_percent(one.share)} (rank correlation {number(one.rank_correlation, 2)})"
+            for one in told[:MOST_NAMED]
+        ]
+        names = "; ".join(parts) if parts else "none that could be told from chance"
+        yield f"Axes by their share of the differences in {metric} between sets: {names}."
+
+
+def _comparisons(found: Sequence[Comparison]) -> Iterator[str]:
+    for axis, one, other in dict.fromkeys((each.axis, each.one, each.other) for each in found):
+        pairs = [each for each in found if (each.axis, each.one, each.other) == (axis, one, other)]
+        orders = Counter(each.order for each in pairs)
+        ratios = sorted(each.ratio for each in pairs)
+        yield (
+            f"{one} lies below {other} at {orders[Order.LOWER]} of {len(pairs)} points, above at "
+            f"{orders[Order.HIGHER]}, and {orders[Order.OPEN]} cannot be told; its mean is {number(ratios[0], 3)} to "
+            f"{number(ratios[-1], 3)} times the other's."
+        )
+
+
+def _distributions(found: Analysis) -> Iterator[str]:
+    fits = [one for one in found.distributions.values() if one.weibull is not None]
+    if not fits:
+        return
+    refused = sum(one.weibull.p_anderson < REFUSED for one in fits if one.weibull is not None)
+    located = sum(one.located.p_anderson < REFUSED for one in fits if one.located is not None)
+    winners = Counter(min(one.preference, key=lambda name: one.preference[name]) for one in fits)
+    yield (
+        f"Of {len(fits)} sets with at least {DISTRIBUTED} runs, a Weibull law from 0 is refused in {refused} and one "
+        f"with a location of its own in {located} (p < {REFUSED}, Anderson and Darling). Fits best: "
+        + ", ".join(f"{name} in {count}" for name, count in winners.most_common())
+        + "."
+    )
+
+
+def _drift(found: Analysis, drift: Drift) -> str:
+    metric = short_metric(found.samples.metric)
+    change = with_interval(drift.slope)
+    if drift.noticed:
+        return (
+            f"{metric} drifted while the study went on: by {change} from the first run to the last, whatever the set "
+            f"(p {chance_text(drift.p)}). Blocked or random order keeps that from looking like an effect."
+        )
+    return f"No drift over the order of the runs is noticed: {change} over the study (p {chance_text(drift.p)})."
+
+
+def _percent(share: float) -> str:
+    return f"{100.0 * share:.0f} %"

@@ -1,0 +1,111 @@
+"""`python -m server.studies VERB DATA ID [PLUGIN ...]`: what the server has done for its studies beside the rig.
+
+carry-out: all that is left of a batch; progress goes to stdout, one JSON object a line.
+report: its report into the study's folder.  plot: its figure, PNG, to stdout.
+A process of its own, since it takes seconds to hours of Python and the control loop must not share its interpreter
+with that. It ends with the server: its stdin does. Exit status: 0 done, 3 impossible, with the reason on stderr.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import sys
+import threading
+import time
+from collections.abc import Sequence
+from contextlib import closing
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from control import plugins
+from control.studies.errors import StudyError
+from server.exports.formats import IMPOSSIBLE
+from server.studies.errors import StudyStoreError
+
+if TYPE_CHECKING:
+    from server.studies.progress import Progress
+    from server.studies.study import Study
+
+NICENESS = 10
+"""A batch takes what the rig and the exports leave: a tenth of its share of a busy processor."""
+ORPHANED = 1
+BETWEEN_LINES = 0.2
+"""Progress is told so often at most, s."""
+
+
+def main(verb: str, data: str, id: str, *files: str) -> int:
+    os.nice(NICENESS)
+    signal.signal(
+        signal.SIGINT, signal.default_int_handler
+    )  # a server that runs in the background ignores it
+    threading.Thread(target=_end_with_the_server, name="server's end", daemon=True).start()
+    try:
+        _load(files)
+        _do(verb, Path(data), id)
+    except (StudyStoreError, StudyError, plugins.PluginError, OSError) as error:
+        print(error, file=sys.stderr)
+        return IMPOSSIBLE
+    except KeyboardInterrupt:  # the study says so itself
+        return 0
+    return 0
+
+
+def _end_with_the_server() -> None:
+    """Whoever has started this closes its stdin at the latest when it dies."""
+    while os.read(sys.stdin.fileno(), 1024):
+        continue
+    os._exit(ORPHANED)
+
+
+def _load(files: Sequence[str]) -> None:
+    plugins.load_installed()
+    for file in files:
+        plugins.load_file(Path(file))
+
+
+def _do(verb: str, data: Path, id: str) -> None:
+    from server.catalogue.catalogue import Catalogue
+    from server.studies.store import StudyStore
+
+    with closing(Catalogue.open(data)) as catalogue:
+        study = StudyStore(data, catalogue).open(id)
+        {"carry-out": _carry_out, "report": _report, "plot": _plot}[verb](study)
+
+
+def _carry_out(study: Study) -> None:
+    from server.studies.carrying_out import carry_out_batch
+
+    carry_out_batch(study, watch=Telling().heed)
+
+
+def _report(study: Study) -> None:
+    from server.reports.study.report import write_report
+
+    write_report(study.table(), study.definition, study.report_folder)
+
+
+def _plot(study: Study) -> None:
+    from server.reports.study.plot import plot_png
+
+    sys.stdout.buffer.write(plot_png(study.table(), study.definition))
+    sys.stdout.buffer.flush()
+
+
+class Telling:
+    """Progress as lines on stdout, not more often than a page can show."""
+
+    def __init__(self) -> None:
+        self._next = 0.0
+
+    def heed(self, progress: Progress) -> None:
+        now = time.monotonic()
+        if now < self._next and progress.done < progress.total:
+            return
+        self._next = now + BETWEEN_LINES
+        print(json.dumps(progress.to_json()), flush=True)
+
+
+if __name__ == "__main__":
+    sys.exit(main(*sys.argv[1:]))

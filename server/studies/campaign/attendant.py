@@ -1,0 +1,184 @@
+"""Who looks after a rig that walks unattended: when a campaign goes on by itself, and when it waits for a person.
+
+The written policy (SAFETY.md, "Campaigns"): after a *hold* it gives the run up and resumes once the cause has gone;
+after a *disarm* or a *fault* it waits for a person to reset and arm the rig; whoever stops the rig stops the campaign.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Literal
+
+from control.coil_heat import OFF_AT
+from control.gait import Gait
+from control.loop import PAUSED, ControlLoop
+from control.safety import Refused
+from control.snapshot import RigState, Snapshot
+from server.studies.campaign.operator import Operator
+from server.studies.campaign.rules import MINUTE, Rules
+
+RETRY = 0.5
+"""What was refused is asked for again so often, s."""
+CALM = 1.0
+"""A held rig rests for this long at least before it goes on, s."""
+COOLING = "the coils cool"
+"""Why a campaign's rig is held that is not held by a fault."""
+
+
+class Stopped(Exception):
+    """The campaign ends here, and can be resumed. state: of the study."""
+
+    def __init__(self, reason: str, state: Literal["stopped", "interrupted"] = "stopped") -> None:
+        super().__init__(reason)
+        self.state: Literal["stopped", "interrupted"] = state
+
+
+class Interrupted(Exception):
+    """What went on did not come to its end; the text says why."""
+
+
+class Attendant:
+    """say: is told in words what the campaign does or waits for."""
+
+    def __init__(self, operator: Operator, rules: Rules, say: Callable[[str], None]) -> None:
+        self.say = say
+        self._operator = operator
+        self._rules = rules
+        self._may_arm = operator.may_arm
+        self._order: Stopped | None = None
+        self._asked_at = self._held_at = -math.inf
+
+    def stop(self, reason: str, *, is_end: bool = False) -> None:
+        """From any thread and from signal handlers: what goes on ends at the next tick. The first order counts."""
+        self._order = self._order or Stopped(reason, "interrupted" if is_end else "stopped")
+
+    def tick(self) -> Snapshot:
+        """The next tick; raises `Stopped` once that was ordered."""
+        snapshot = self._operator.tick()
+        if self._order is not None:
+            raise self._order
+        return snapshot
+
+    # Until a run may begin -----------------------------------------------------------------------
+
+    def until_fit(self, gait: Gait) -> Snapshot:
+        """Until the rig is armed, sees its robot and is cool; raises `Stopped` where that takes too long.
+
+        gait: to arm with, where the campaign may arm.
+        """
+        give_up = self._operator.now + self._rules.patience
+        while True:
+            snapshot = self.tick()
+            if self._is_fit(snapshot):
+                self._may_arm = False
+                return snapshot
+            obstacle = self._further(snapshot, gait)
+            if not obstacle:
+                give_up = self._operator.now + self._rules.patience
+            elif self._operator.now > give_up:
+                raise Stopped(f"waited for {self._rules.patience / MINUTE:g} min: {obstacle}")
+
+    def _is_fit(self, snapshot: Snapshot) -> bool:
+        is_armed = snapshot.rig is RigState.ARMED
+        return is_armed and self._is_cool(snapshot) and not self._operator.do(lambda loop: loop.obstacle)
+
+    def _is_cool(self, snapshot: Snapshot) -> bool:
+        return all(heat <= self._rules.cool_to for heat in snapshot.coil_heat)
+
+    def _further(self, snapshot: Snapshot, gait: Gait) -> str:
+        """Do what may be done towards a rig that is fit; what bars the way, "" for what only takes its time."""
+        if snapshot.rig is not RigState.HELD:
+            self._held_at = self._operator.now
+        match snapshot.rig:
+            case RigState.HELD if snapshot.reason == PAUSED:
+                return self._wait("paused: it goes on when somebody resumes it")
+            case RigState.FAULT:
+                return self._need_person(f"reset and arm the rig ({snapshot.reason})")
+            case RigState.DISARMED if not self._may_arm:
+                return self._need_person(f"arm the rig ({snapshot.reason})")
+            case _ if not self._is_cool(snapshot):
+                return self._cool(snapshot)
+            case RigState.DISARMED:
+                return self._try(lambda loop: loop.arm(gait, consent=True), "getting ready")
+            case RigState.HELD if self._operator.now - self._held_at >= CALM:
+                return self._try(lambda loop: loop.resume(), "held")
+            case RigState.ARMED:
+                return self._told(f"waiting: {snapshot.tracking_reason or 'something bars the way'}")
+        return ""
+
+    def _wait(self, words: str) -> str:
+        self.say(words)
+        return ""
+
+    def _told(self, words: str) -> str:
+        self.say(words)
+        return words
+
+    def _need_person(self, what: str) -> str:
+        if not self._operator.is_attended:
+            raise Stopped(f"a person must {what}, and then resume the study")
+        return self._told(f"waiting for a person: {what}")
+
+    def _cool(self, snapshot: Snapshot) -> str:
+        """Rest with the coils off; that takes its time, and is no reason to give up."""
+        hottest = max(snapshot.coil_heat, default=OFF_AT)
+        self.say(f"waiting for the coils to cool: {hottest:.0%} → {self._rules.cool_to:.0%}")
+        if snapshot.rig is RigState.ARMED:
+            self._try(lambda loop: loop.rest(COOLING), "cooling")
+        return ""
+
+    def _try(self, act: Callable[[ControlLoop], None], doing: str) -> str:
+        """What the rig refuses is asked for again after a while."""
+        if self._operator.now - self._asked_at < RETRY:
+            return doing
+        self._asked_at = self._operator.now
+        try:
+            self._operator.do(act)
+        except Refused as refusal:
+            return self._told(f"{doing}: {refusal}")
+        return ""
+
+    # While the robot walks -----------------------------------------------------------------------
+
+    def follow(self) -> Snapshot:
+        """To the end of the walk that is on; raises `Interrupted` when something holds it, which ends it."""
+        while True:
+            snapshot = self.tick()
+            if snapshot.run is None:
+                return snapshot
+            if snapshot.rig is RigState.HELD and snapshot.reason != PAUSED:
+                self.abandon(snapshot.reason)
+                raise Interrupted(snapshot.reason)
+
+    def abandon(self, reason: str) -> None:
+        """End the walk that is on, if it is on still."""
+        try:
+            self._operator.do(lambda loop: loop.abandon_run(reason))
+        except Refused:  # it has come to its end meanwhile
+            return
+
+    def rest(self, duration: float) -> Snapshot:
+        """Let the robot come to rest for so long, s; raises `Interrupted` where the rig does not stay armed."""
+        until = self._operator.now + duration
+        while True:
+            snapshot = self.tick()
+            if snapshot.rig is not RigState.ARMED:
+                raise Interrupted(snapshot.reason)
+            if self._operator.now >= until:
+                return snapshot
+
+    def leave(self) -> None:
+        """Nobody walks any more, and the coils are off."""
+        reason = "the study is over" if self._order is None else str(self._order)
+        try:
+            self.abandon(reason)
+            self._operator.do(lambda loop: _put_down(loop, reason))
+            self._operator.tick()
+        except Refused:  # the rig hangs; it has been stopped from outside
+            return
+
+
+def _put_down(loop: ControlLoop, reason: str) -> None:
+    if loop.state is not RigState.FAULT:
+        loop.disarm(reason)

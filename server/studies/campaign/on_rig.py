@@ -1,0 +1,97 @@
+"""A campaign on the rig that is served: asked from the campaign's own thread, beside everybody who watches it."""
+
+from __future__ import annotations
+
+import asyncio
+import concurrent.futures
+import threading
+from collections.abc import Callable, Coroutine, Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from control.loop import ControlLoop
+from control.runs import Run, RunRequest
+from control.snapshot import Snapshot
+from server.occupation import Occupant
+from server.studies.campaign.operator import RigGone
+
+if TYPE_CHECKING:
+    from server.rig import Rig
+
+T = TypeVar("T")
+
+CLOSED = "the rig was closed"
+LOOK_AGAIN = 0.25
+"""Where no tick comes, the rig is looked at so often all the same, s."""
+
+
+class RigOperator:
+    """To be made on the event loop's thread, and used on another one.
+
+    consent: a person agrees that the campaign arms the rig when it begins; a simulated rig needs none.
+    """
+
+    is_attended = True
+
+    def __init__(self, rig: Rig, *, consent: bool) -> None:
+        self.may_arm = consent or rig.settings.is_simulated
+        self._rig = rig
+        self._events = asyncio.get_running_loop()
+        self._ticked = threading.Event()
+        self._newest: Snapshot | None = None
+        """Of the ticks since the campaign did something."""
+
+    @property
+    def now(self) -> float:
+        return self._rig.machine.camera.now()
+
+    @contextmanager
+    def occupied(self, by: Occupant) -> Iterator[None]:
+        with self._rig.occupation.by(by), self._rig.watched(self._see):
+            yield
+
+    def _see(self, snapshot: Snapshot) -> None:
+        """On the rig's thread."""
+        self._newest = snapshot
+        self._ticked.set()
+
+    def tick(self) -> Snapshot:
+        """A rig whose loop hangs has no ticks; what is known of it is told then."""
+        while True:
+            self._ticked.wait(LOOK_AGAIN)
+            self._ticked.clear()
+            if self._rig.failure is not None or self._rig.updates.closed:
+                raise RigGone(self._rig.snapshot.reason)
+            if self._newest is not None:
+                snapshot, self._newest = self._newest, None
+                return snapshot
+            if self._rig.hangs:
+                return self._rig.snapshot
+
+    def do(self, act: Callable[[ControlLoop], T]) -> T:
+        return self._answer(self._rig.between_ticks(lambda: act(self._rig.machine.loop)))
+
+    def start(self, request: RunRequest) -> str:
+        return self._answer(self._rig.begin_run(request)).id
+
+    def outcome(self, id: str) -> Run:
+        return self._rig.runs.of(id)
+
+    def _answer(self, question: Coroutine[Any, Any, T]) -> T:
+        """Ask on the event loop, and wait for what comes of it; ticks before it are no news any more."""
+        if self._events.is_closed():
+            question.close()
+            raise RigGone(CLOSED)
+        asked = asyncio.run_coroutine_threadsafe(question, self._events)
+        while not concurrent.futures.wait([asked], LOOK_AGAIN).done:
+            if not self._events.is_running():
+                raise RigGone(CLOSED)
+        self._newest = None
+        try:
+            return asked.result()
+        except concurrent.futures.CancelledError as error:
+            raise RigGone(CLOSED) from error
+        except RuntimeError as error:
+            if self._rig.updates.closed:  # its thread has ended
+                raise RigGone(CLOSED) from error
+            raise

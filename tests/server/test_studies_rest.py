@@ -1,0 +1,171 @@
+"""Studies through REST: counted before they begin, computed beside the live rig, stopped, resumed, taken away."""
+
+import asyncio
+import csv
+import io
+import json
+import zipfile
+
+import pytest
+
+pytestmark = pytest.mark.anyio
+
+DONE_WITHIN = 60.0
+"""Of a busy computer, s; it takes about 5."""
+SHORT = {
+    "name": "sweeps on a small circle",
+    "repeats": 2,
+    "trajectory": {"name": "circle", "parameters": {"radius_mm": 5.0}},
+    "duration_s": 4.0,
+    "plant": {"name": "noslip"},
+    "axes": [{"of": "gait.sweep_deg", "values": [10, 20, 30]}],
+}
+LONG = {**SHORT, "name": "long", "repeats": 50_000, "duration_s": 600.0, "controller": {"name": "planner"}}
+
+
+async def made(api, **body):
+    answer = await api.post("/studies", json=body)
+    assert answer.status_code == 201, answer.text
+    return answer.json()
+
+
+async def until(api, id, *states):
+    async with asyncio.timeout(DONE_WITHIN):
+        while (study := (await api.get(f"/studies/{id}")).json())["state"] not in states:
+            await asyncio.sleep(0.05)
+    return study
+
+
+async def test_a_study_is_counted_before_it_begins(api):
+    answer = (await api.post("/studies/preview", json={"definition": SHORT})).json()
+    assert (answer["sets"], answer["runs"], answer["problems"]) == (3, 6, [])
+    assert answer["rig_seconds"] == pytest.approx(6 * 4.0)
+    assert answer["seconds"] > 0.0
+    assert answer["axes"] == [
+        {"name": "gait.sweep_deg", "title": "Sweep", "unit": "°", "values": [10, 20, 30]}
+    ]
+    again = (await api.post("/studies/preview", json={"toml": answer["toml"]})).json()
+    assert again == answer
+    assert (await api.get("/studies")).json() == {"studies": []}
+
+
+@pytest.mark.parametrize(
+    ("change", "field", "words"),
+    [
+        ({"repeats": 0}, "repeats", "greater than or equal to 1"),
+        ({"repeats": "three"}, "repeats", "integer"),
+        ({"axes": [{"of": "gait.tilt_deg", "values": [200]}]}, "", "tilt_deg"),
+        ({"axes": [{"of": "legs", "values": [2]}]}, "axes.0.of", "nothing is called"),
+        ({"axes": [{"of": "gait.tilt_deg", "from": 10, "to": 20}]}, "", "needs a step"),
+        ({"trajectory": {"name": "circle", "parameters": {"radius_mm": 90.0}}}, "", "workspace"),
+        ({"controller": {"name": "nobody"}}, "", "nobody"),
+        ({"colour": "blue"}, "colour", "not a known field"),
+    ],
+)
+async def test_what_is_wrong_with_a_study_is_said_beside_its_field_and_nothing_is_made(api, change, field, words):
+    definition = {**SHORT, **change}
+    told = (await api.post("/studies/preview", json={"definition": definition})).json()["problems"]
+    assert any(problem["field"] == field and words in problem["message"] for problem in told), told
+    refused = await api.post("/studies", json={"definition": definition})
+    assert refused.status_code == 422
+    assert refused.headers["content-type"] == "application/problem+json"
+    assert words in refused.json()["detail"]
+    assert (await api.get("/studies")).json() == {"studies": []}
+
+
+async def test_a_text_that_is_no_toml_and_a_body_that_says_both_are_refused_in_words(api):
+    told = (await api.post("/studies/preview", json={"toml": "name = "})).json()["problems"]
+    assert "no TOML" in told[0]["message"]
+    both = await api.post("/studies/preview", json={"toml": "", "definition": {}})
+    assert both.status_code == 422
+
+
+async def test_a_batch_is_watched_to_its_end_and_taken_away(api, at):
+    async with at.socket("/api/v1/telemetry?rate_Hz=1") as telemetry:
+        study = await made(api, definition=SHORT)
+        assert (study["name"], study["on"], study["done"], study["total"]) == (SHORT["name"], "batch", 0, 6)
+        told = await heard(telemetry, study["id"])
+    assert told[0]["event"] == "created"
+    assert told[1]["study"]["state"] == "running"
+    assert told[-1]["study"]["state"] == "finished"
+    assert [news["study"]["done"] for news in told[1:]][-1] == 6
+
+    whole = (await api.get(f"/studies/{study['id']}")).json()
+    assert (whole["done"], whole["failed"], whole["rows"], whole["metric"]) == (6, 0, 6, "normalized_mean_error")
+    assert [(each["values"], each["runs"]) for each in whole["sets"]] == [
+        ({"gait.sweep_deg": sweep}, 2) for sweep in (10, 20, 30)
+    ]
+    assert all(each["low"] <= each["mean"] <= each["high"] for each in whole["sets"])
+    assert whole["best"]["mean"] == min(each["mean"] for each in whole["sets"])
+    assert whole["best"]["words"].startswith("sweep ")
+    in_mm = (await api.get(f"/studies/{study['id']}?metric=mean_error_mm")).json()["sets"]
+    assert [each["mean"] for each in in_mm] == pytest.approx([10 * each["mean"] for each in whole["sets"]])
+    assert (await api.get(f"/studies/{study['id']}?metric=beauty")).status_code == 422
+    await taken_away(api, study["id"])
+
+
+async def heard(telemetry, id):
+    told = []
+    async with asyncio.timeout(DONE_WITHIN):
+        while not told or told[-1]["event"] != "ended":
+            message = json.loads(await telemetry.recv())
+            if message["type"] == "study" and message["study"]["id"] == id:
+                told.append(message)
+    return told
+
+
+async def taken_away(api, id):
+    table = (await api.get(f"/studies/{id}/table.csv")).text
+    rows = list(csv.DictReader(io.StringIO(table)))
+    assert [int(row["index"]) for row in rows] == list(range(6))
+    assert (await api.get(f"/studies/{id}/plot.png", timeout=DONE_WITHIN)).content.startswith(b"\x89PNG")
+    report = await api.get(f"/studies/{id}/report", timeout=DONE_WITHIN)
+    assert SHORT["name"] in report.text
+    assert "style-src 'self' 'unsafe-inline'" in report.headers["content-security-policy"]
+    packed = await api.get(f"/studies/{id}/report.zip")
+    with zipfile.ZipFile(io.BytesIO(packed.content)) as file:
+        assert file.read("table.csv").decode() == table
+        assert {"report.html", "definition.toml"} <= set(file.namelist())
+    toml = (await api.get(f"/studies/{id}/definition.toml")).text
+    assert (await api.post("/studies/preview", json={"toml": toml})).json()["runs"] == 6
+
+    assert (await api.post(f"/studies/{id}/resume")).status_code == 409
+    assert (await api.delete(f"/studies/{id}")).status_code == 204
+    assert (await api.get(f"/studies/{id}")).status_code == 404
+    assert (await api.get("/studies")).json() == {"studies": []}
+
+
+async def test_a_batch_is_stopped_and_resumed_and_a_second_one_beside_it_refused(api):
+    study = await made(api, definition=LONG)
+    refused = await api.post("/studies", json={"definition": SHORT})
+    assert refused.status_code == 409
+    assert "'long'" in refused.json()["detail"]
+    assert (await api.delete(f"/studies/{study['id']}")).status_code == 409
+    async with asyncio.timeout(DONE_WITHIN):
+        while (await api.get(f"/studies/{study['id']}")).json()["done"] == 0:
+            await asyncio.sleep(0.1)
+
+    stopped = (await api.post(f"/studies/{study['id']}/stop", timeout=DONE_WITHIN)).json()
+    assert stopped["state"] == "stopped"
+    done = stopped["done"]
+    assert 0 < done < stopped["total"]
+    resumed = (await api.post(f"/studies/{study['id']}/resume")).json()
+    assert resumed["state"] == "running"
+    assert resumed["done"] >= done
+    stopped = (await api.post(f"/studies/{study['id']}/stop", timeout=DONE_WITHIN)).json()
+    assert stopped["state"] in ("stopped", "planned")
+    assert stopped["done"] >= done
+    assert (await api.delete(f"/studies/{study['id']}")).status_code == 204
+
+
+async def test_a_study_may_be_made_without_being_begun(api):
+    study = await made(api, definition=SHORT, begin=False)
+    assert study["state"] == "planned"
+    assert (await api.get(f"/studies/{study['id']}/plot.png")).status_code == 409
+    assert (await api.delete(f"/studies/{study['id']}")).status_code == 204
+
+
+async def test_the_plants_of_a_batch_are_listed_with_their_parameters(api):
+    plants = {plant["name"]: plant for plant in (await api.get("/plants")).json()}
+    assert {"slip", "noslip", "rigid"} <= plants.keys()
+    assert "slip_scale" in plants["slip"]["parameters"]["properties"]
