@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from control.gait import Counts
-from control.model import Pose
+from control.model import Pose, distance
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,7 +74,7 @@ class MetricsTally:
         self._largest = max(self._largest, error)
         self._last = error
         if self._previous is not None:
-            self._travelled += pose.distance_to(self._previous.x, self._previous.y)
+            self._travelled += distance(pose.x, pose.y, self._previous.x, self._previous.y)
         self._previous = pose
 
     @property
@@ -82,7 +82,5 @@ class MetricsTally:
         return self._sum / self._ticks if self._ticks else 0.0
 
     def metrics(self, counts: Counts, duration: float) -> Metrics:
-        sums = Sums(
-            self._ticks, self._sum, self._sum_of_squares, self._largest, self._last, self._travelled
-        )
+        sums = Sums(self._ticks, self._sum, self._sum_of_squares, self._largest, self._last, self._travelled)
         return sums.metrics(self._length, counts, duration)

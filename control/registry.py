@@ -37,6 +37,7 @@ class Entry(Protocol):
 
 
 E = TypeVar("E", bound=Entry)
+T = TypeVar("T")
 
 
 class Registry(Mapping[str, type[E]], Generic[E]):
@@ -46,13 +47,14 @@ class Registry(Mapping[str, type[E]], Generic[E]):
         self.kind = kind
         self._entries: dict[str, type[E]] = {}
 
-    def register(self, entry: type) -> type:
+    def register(self, entry: type[T]) -> type[T]:
         """Class decorator: make the class known under its `name`, which must be free."""
-        if not (isinstance(getattr(entry, "name", None), str) and entry.name):
+        kind: Any = entry
+        if not (isinstance(getattr(entry, "name", None), str) and kind.name):
             raise ValueError(f"the {self.kind} {entry.__name__} needs a name: a class attribute, a text")
-        if entry.name in self._entries:
-            raise ValueError(f"a {self.kind} called {entry.name!r} is registered already")
-        self._entries[entry.name] = entry
+        if kind.name in self._entries:
+            raise ValueError(f"a {self.kind} called {kind.name!r} is registered already")
+        self._entries[kind.name] = kind
         return entry
 
     def forget(self, name: str) -> None:

@@ -11,7 +11,7 @@ from control.field import Field
 from control.gait import Gait
 from control.gait_model import GaitModel
 from control.metrics import Metrics, MetricsTally
-from control.model import Pivot, Pose
+from control.model import Pivot, Pose, distance
 from control.runs import RunRequest, Selection
 from control.snapshot import RunProgress
 from control.trajectories import Trajectory
@@ -98,7 +98,7 @@ class Walk:
         self._reference.advance_to(self.elapsed - self._began, pose)
         reference = self._finite_reference()
         if not self._reference.is_approaching:
-            self.tally.add(pose, pose.distance_to(*reference))
+            self.tally.add(pose, distance(pose.x, pose.y, *reference))
         moment = Moment(
             now=now,
             pose=pose,

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import math
-
 from pydantic import Field
 
 from control.controllers.controller import Decision, Situation, controllers
-from control.model import PIVOT_A, PIVOT_B, Pivot, Place, pivot_point
+from control.model import PIVOT_A, PIVOT_B, Pivot, Place, distance, pivot_point
 from control.registry import Parameters
 
 Point = tuple[float, float]
@@ -49,8 +47,8 @@ class Geometric:
 
 def nearest_pivot(pose: Place, desired: Point, pivot: Pivot, length: float) -> Pivot:
     """sigma = sign(d_B - d_A); `pivot`, the one in use, when both are as near. desired: m.  length: m."""
-    distance_a = apart(pivot_point(pose, PIVOT_A, length), desired)
-    distance_b = apart(pivot_point(pose, PIVOT_B, length), desired)
+    distance_a = distance(*pivot_point(pose, PIVOT_A, length), *desired)
+    distance_b = distance(*pivot_point(pose, PIVOT_B, length), *desired)
     if distance_a == distance_b:
         return pivot
     return PIVOT_A if distance_a < distance_b else PIVOT_B
@@ -58,10 +56,4 @@ def nearest_pivot(pose: Place, desired: Point, pivot: Pivot, length: float) -> P
 
 def swing_rate(gain: float, pivot: Pivot, pose: Place, desired: Point) -> float:
     """omega = k sigma e_n, rad/s. gain: 1/(m s).  desired: m."""
-    return gain * pivot * apart((pose.x, pose.y), desired)
-
-
-def apart(place: Point, other: Point) -> float:
-    """Distance of two points, m."""
-    x, y = place[0] - other[0], place[1] - other[1]
-    return math.sqrt(x * x + y * y)
+    return gain * pivot * distance(pose.x, pose.y, desired[0], desired[1])

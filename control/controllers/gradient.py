@@ -11,14 +11,14 @@ on either and the lower end taken, where print relaxes sigma, descends and round
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from pydantic import Field
 
 from control.controllers.controller import Decision, Situation, controllers
 from control.controllers.heading import HeadingParameters, WantedHeading
 from control.gait import Gait
-from control.model import opposite, wrap
+from control.model import distance, opposite, wrap
 
 BASE_LOOK_AHEAD = 0.33
 LOOK_AHEAD_PER_SWEEP = 0.955
@@ -44,8 +44,7 @@ class GradientParameters(HeadingParameters):
     )  # fmt: skip
 
 
-@dataclass(frozen=True, slots=True)
-class Cost:
+class Cost(NamedTuple):
     """The value of J and its derivatives, for one situation.
 
     x, y, heading: the robot's.  half: L/2.  look_ahead: tau, s.  desired_x, desired_y: where to be then, m.
@@ -61,14 +60,6 @@ class Cost:
     desired_y: float
     wanted: float
     weight: float
-
-    def value(self, rate: float, sigma: float) -> float:
-        """J, m^2."""
-        return cost_value(self, rate, sigma)
-
-    def by_rate(self, rate: float, sigma: float) -> float:
-        """dJ/d omega, m^2 s."""
-        return cost_by_rate(self, rate, sigma)
 
 
 def cost_value(cost: Cost, rate: float, sigma: float) -> float:
@@ -101,9 +92,8 @@ def cost_errors(cost: Cost, rate: float, sigma: float) -> tuple[float, float, fl
 def distance_from_pivot(cost: Cost, sigma: float) -> float:
     """Of the desired point, m."""
     half = cost.half * sigma
-    x = cost.x - half * math.sin(cost.heading) - cost.desired_x
-    y = cost.y + half * math.cos(cost.heading) - cost.desired_y
-    return math.sqrt(x * x + y * y)
+    x, y = cost.x - half * math.sin(cost.heading), cost.y + half * math.cos(cost.heading)
+    return distance(x, y, cost.desired_x, cost.desired_y)
 
 
 def descend(cost: Cost, sigma: float, rate: float, max_rate: float) -> float:

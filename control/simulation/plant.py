@@ -195,8 +195,9 @@ def watch_elevation(
 
 def turn_towards(heading: float, field_heading: float, play: float, dt: float) -> float:
     """The body's turn (rad) about its pivot until the field leads by half the play at most (the play operator)."""
-    lead = wrap(field_heading - heading)
-    slack = 0.5 * play
+    lead, slack = field_heading - heading, 0.5 * play
+    if not -math.pi <= lead < math.pi:
+        lead = wrap(lead)
     if -slack <= lead <= slack:
         return 0.0
     furthest = ALIGNMENT_RATE * dt

@@ -7,6 +7,9 @@ from collections.abc import Sequence
 from dataclasses import astuple, dataclass
 from itertools import pairwise
 
+import numpy as np
+from numpy.typing import NDArray
+
 
 @dataclass(frozen=True, slots=True)
 class Slip:
@@ -68,7 +71,7 @@ class SlipParameters:
         return mean.scaled(length / self.reference_length)
 
 
-def between_rows(tilts: Sequence[float], tilt: float) -> tuple[int, float]:
+def between_rows(tilts: Sequence[float] | NDArray[np.float64], tilt: float) -> tuple[int, float]:
     """The row below `tilt` (rad) and the share of the way to the next one; 0 beyond the ends of the table."""
     last = len(tilts) - 1
     if not tilt > tilts[0]:

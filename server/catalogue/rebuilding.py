@@ -25,12 +25,13 @@ Watch = Callable[[int, int], None]
 class Rebuilt:
     """added: runs that were not in the catalogue.  renewed: read once more.  lost: whose recording is gone.
 
-    told: what was mended and what cannot be read, in words.
+    studies: that are listed.  told: what was mended and what cannot be read, in words.
     """
 
     added: int = 0
     renewed: int = 0
     lost: int = 0
+    studies: int = 0
     told: list[str] = field(default_factory=list)
 
 
@@ -43,7 +44,15 @@ def rebuild(shelf: Shelf, watch: Watch = lambda _read, _all: None) -> Rebuilt:
         _take(shelf, path, done)
         watch(read, len(paths))
     done.lost = _mark_lost(shelf)
+    done.studies = _list_studies(shelf)
     return done
+
+
+def _list_studies(shelf: Shelf) -> int:
+    """Their folders lie beside that of the recordings; how many there are."""
+    from server.studies.store import StudyStore
+
+    return StudyStore(shelf.folder.parent, shelf.catalogue).relist()
 
 
 def _take(shelf: Shelf, path: Path, done: Rebuilt) -> None:
@@ -108,6 +117,7 @@ def put_in_order(shelf: Shelf, watch: Watch = lambda _read, _all: None) -> str:
     What was done, in words, if anything. Raises `CatalogueError`.
     """
     finish_deletions(shelf)
+    _list_studies(shelf)
     if not shelf.catalogue.is_new:
         return _unlisted_added(shelf, watch)
     if not any(shelf.folder.glob(f"*{RECORDING}")):

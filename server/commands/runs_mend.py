@@ -30,6 +30,8 @@ def rebuild(data: DataOption = None, as_json: JsonOption = False) -> None:
         print(json.dumps(asdict(done)))
         return
     print(f"{done.added} runs added, {done.renewed} renewed, {done.lost} without their recording")
+    if done.studies:
+        print(f"{done.studies} studies listed")
     for line in done.told:
         typer.echo(line, err=True)
 

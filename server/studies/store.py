@@ -20,6 +20,7 @@ from server.studies.study import Study
 
 if TYPE_CHECKING:
     from server.catalogue.catalogue import Catalogue
+    from server.catalogue.records import StudyRecord
 
 STUDIES = "studies"
 """In the data folder."""
@@ -120,25 +121,30 @@ class StudyStore:
         )
 
     def relist(self) -> int:
-        """Make the catalogue's list of studies what is in the folder; how many there are."""
+        """Make the catalogue's list of studies what is in the folder; how many there are. Raises `CatalogueError`."""
+        ids = self.ids()
         if self._catalogue is None:
-            return 0
-        self._catalogue.studies.keep_only(self.ids())
-        studies = self.all()
-        for study in studies:
-            self._list(study)
-        return len(studies)
+            return len(ids)
+        listed = {record.id: record for record in self._catalogue.studies.all()}
+        if listed.keys() - ids:
+            self._catalogue.studies.keep_only(ids)
+        for record in map(_record, self.all()):
+            if listed.get(record.id) != record:
+                self._catalogue.studies.put(record)
+        return len(ids)
 
     def _list(self, study: Study) -> None:
         """The folder is what counts: a catalogue that cannot be written to is made anew some other day."""
         if self._catalogue is None:
             return
         from server.catalogue.errors import CatalogueError
-        from server.catalogue.records import StudyRecord
 
-        condition = study.condition
-        record = StudyRecord(
-            study.id, study.definition.name, study.definition.to_json(), condition.state, condition.created
-        )
         with contextlib.suppress(CatalogueError):
-            self._catalogue.studies.put(record)
+            self._catalogue.studies.put(_record(study))
+
+
+def _record(study: Study) -> StudyRecord:
+    from server.catalogue.records import StudyRecord
+
+    condition, definition = study.condition, study.definition
+    return StudyRecord(study.id, definition.name, definition.to_json(), condition.state, condition.created)

@@ -7,10 +7,18 @@ from __future__ import annotations
 
 import argparse
 
-from tests.benchmarks import decision_cost, live_loop, recording_cost, simulation_pace, tracking_cost
+from tests.benchmarks import (
+    decision_cost,
+    live_loop,
+    recording_cost,
+    rigid_pace,
+    simulation_pace,
+    tracking_cost,
+)
 
 SECTIONS = {
     "pace": simulation_pace.report,
+    "rigid": rigid_pace.report,
     "loop": live_loop.report,
     "recording": recording_cost.report,
     "tracking": tracking_cost.report,

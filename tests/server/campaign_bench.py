@@ -23,12 +23,14 @@ from server.studies.campaign.way_back import ID as WAY_BACK
 from server.studies.store import StudyStore
 from server.studies.study import Study
 
+CIRCLE = {"radius_mm": 5.0, "speed_mm_s": 10.0, "centre_x_mm": -3.0, "centre_y_mm": -40.0}
+"""It begins 3 mm from where the simulated robot is put."""
 SHORT: dict[str, Any] = {
     "name": "short", "on": "rig", "duration_s": 0.6,
-    "trajectory": {"name": "circle", "parameters": {"radius_mm": 5.0, "speed_mm_s": 10.0}},
+    "trajectory": {"name": "circle", "parameters": CIRCLE},
     "gait": {"sweep_deg": 20.0}, "rig": {"rest_s": 0.1}, "axes": [{"of": "gait.tilt_deg", "values": [20, 25, 30]}],
 }  # fmt: skip
-"""Three runs of a tenth of a second more than half a second, a few millimetres apart."""
+"""Three runs of 0.6 s, which take the robot a few millimetres away."""
 
 
 class AttendedOperator(HeadlessOperator):
@@ -128,8 +130,8 @@ class CampaignBench:
         operator = kind(machine, self.archive.recorder, see)
         sitting.campaign = Campaign(study, operator, self.archive.catalogue, sitting.hear)
         outcome = sitting.campaign.run()
-        for row in study.rows():
-            self.archive.recorder.written(row.run_id, 10.0)
+        for run in self.runs(study):
+            self.archive.recorder.written(run.id, 30.0)
         return outcome, sitting
 
     def runs(self, study: Study, state: str = "") -> list[RunRecord]:

@@ -11,7 +11,7 @@ from control.snapshot import RigState, Snapshot
 from server.recording.reading.recording import Recording
 from server.studies.campaign.way_back import ID as WAY_BACK
 from server.studies.study import RESULTS
-from tests.server.campaign_bench import CampaignBench, Sitting, indices, off, start_of
+from tests.server.campaign_bench import CIRCLE, CampaignBench, Sitting, indices, off, start_of
 
 GRID = [
     {"of": "gait.tilt_deg", "values": [20, 25, 30]},
@@ -129,7 +129,7 @@ def test_a_run_that_never_comes_to_its_end_fails_and_the_others_are_walked(bench
 def test_a_campaign_whose_runs_all_fail_ends_by_its_rule(bench: CampaignBench) -> None:
     study = bench.study(
         controller={"name": "sequence", "parameters": {"table": "A 10 60"}},
-        trajectory={"name": "circle", "parameters": {"radius_mm": 5.0, "speed_mm_s": 10.0, "centre_x_mm": 59.0}},
+        trajectory={"name": "circle", "parameters": {**CIRCLE, "centre_x_mm": 59.0}},
         stop={"failed_in_a_row": 2},
     )
     outcome, _ = bench.sit(study)

@@ -170,9 +170,9 @@ def test_a_free_magnet_swings_about_the_field_with_the_damping_that_is_asked_for
 def walk(plant: RigidPlant, chunk: int) -> Pose:
     """Two sweeps and a switch, with the same field for `chunk` ms each."""
     tilt = math.radians(30.0)
-    for pivot, sign in ((PIVOT_A, 1.0), (PIVOT_B, -1.0)):
+    for pivot in (PIVOT_A, PIVOT_B):
         for step in range(20):
-            field = command_field(pivot, START.heading + sign * 0.02 * step, tilt, FIELD)
+            field = command_field(pivot, START.heading + pivot * 0.02 * step, tilt, FIELD)
             for _ in range(20 // chunk):
                 plant.step(field, chunk * MILLISECOND)
     return plant.pose

@@ -59,7 +59,9 @@ class ShortBoard(ScriptedBoard):
 
 
 def world_of(script: list[Vector], plant: str = "slip", start_time: float = 0.0) -> World:
-    return World(ScriptedBoard(script), build_plant(PlantChoice(plant), 0.01, START, seed=2), COILS, start_time)
+    return World(
+        ScriptedBoard(script), build_plant(PlantChoice(plant), 0.01, START, seed=2), COILS, start_time
+    )
 
 
 def test_time_passes_in_whole_milliseconds():

@@ -21,9 +21,11 @@ WIDTH = 256
 """Chains kept at each depth."""
 FIXED_COST = 0.4
 """Of any sweep, as a share of the cost of the widest one: switching takes as long as turning by some 15 degrees."""
-OVER_THE_EDGE = 1e6
-"""Cost of leading out of the workspace, in sweeps per metre: a thousand for each millimetre. A robot that slipped
-over the edge still finds the way that leads back soonest; what must not be is the loop's to forbid."""
+SWAY = 1e-3
+"""A walk along the edge of the workspace sways over it by about this, m; half of the usual soft margin."""
+OVER_THE_EDGE = 1e4
+"""Cost of leading further out, in sweeps per metre: ten for each millimetre. Where every chain leads out, as from
+beyond the edge, the one that leads back soonest is best; what must not be is the loop's to forbid."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,7 +64,7 @@ class Bounds:
     def excess(self, place: Complex) -> Float:
         """What a chain through these places costs beside its sweeps."""
         there = self.origin + self.turn * place
-        outside = np.maximum(np.abs(there.real), np.abs(there.imag)) - self.edge
+        outside = np.maximum(np.abs(there.real), np.abs(there.imag)) - self.edge - SWAY
         return OVER_THE_EDGE * np.maximum(outside, 0.0)
 
 

@@ -86,12 +86,16 @@ def pair(a: Array, b: Array, named: tuple[str, Any, Any, Mapping[str, Any]] = ("
     return Comparison(
         axis, one, other, fixed, means,
         _difference(a, b) if scattered else Interval(means[0] - means[1]),
-        float(stats.ttest_ind(a, b, equal_var=False).pvalue) if scattered else NAN,
+        _welch(a, b) if scattered else NAN,
         float(stats.mannwhitneyu(a, b).pvalue) if scattered else NAN,
         _hedges(a, b) if scattered else NAN,
         _below(a, b),
         (len(a), len(b)),
     )  # fmt: skip
+
+
+def _welch(a: Array, b: Array) -> float:
+    return float(stats.ttest_ind(a, b, equal_var=False)[1])  # pyright: ignore[reportArgumentType]
 
 
 def _difference(a: Array, b: Array) -> Interval:

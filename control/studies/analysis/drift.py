@@ -61,10 +61,10 @@ def _found(x: np.ndarray, y: np.ndarray, sets: int, runs: int) -> Drift | None:
     freedom = len(y) - sets - 1
     error = np.sqrt(float(np.sum((y - slope * x) ** 2)) / freedom / spread)
     reach = t_quantile(freedom) * float(error)
-    rank = stats.spearmanr(x, y)
+    rank, p = (float(one) for one in stats.spearmanr(x, y))  # pyright: ignore[reportArgumentType]
     return Drift(
         Interval(slope, slope - reach, slope + reach).scaled(max(runs - 1, 1)),
-        float(rank.statistic),
-        float(rank.pvalue),
+        rank,
+        p,
         len(y),
     )

@@ -125,7 +125,14 @@ def _found(levels: _Levels) -> Optimum:
     at = int(np.argmin(line))
     where, value = _intervals(levels, through.x, line, through.operator)
     return Optimum(
-        levels.axis, levels.fixed, where, value, _kind(levels, through.x, at, where), measured, through.x, line
+        levels.axis,
+        levels.fixed,
+        where,
+        value,
+        _kind(through.x, at, where),
+        measured,
+        through.x,
+        line,
     )
 
 
@@ -149,7 +156,7 @@ def _between(draws: Array, value: float) -> tuple[float, float]:
     return min(float(low), value), max(float(high), value)
 
 
-def _kind(levels: _Levels, x: Array, at: int, where: Interval) -> Kind:
+def _kind(x: Array, at: int, where: Interval) -> Kind:
     span = float(x[-1] - x[0])
     if not where.known:
         return Kind.UNKNOWN

@@ -47,7 +47,7 @@ def _influence(samples: Samples, axis: str, means: Array) -> Influence:
     rank, p_monotone = NAN, NAN
     if samples.numeric(axis) and np.ptp(means) > 0.0:
         found = stats.spearmanr(samples.numbers(axis), means)
-        rank, p_monotone = float(found.statistic), float(found.pvalue)
+        rank, p_monotone = (float(one) for one in found)  # pyright: ignore[reportArgumentType]
     share, p = _kruskal(_bins(samples, axis), means)
     return Influence(axis, rank, p_monotone, share, p, len(means))
 

@@ -71,4 +71,4 @@ def _roughness(x: Array) -> Array:
         R[j, j] = (h[j] + h[j + 1]) / 3.0
         if j + 1 < inner:
             R[j, j + 1] = R[j + 1, j] = h[j + 1] / 6.0
-    return Q @ np.linalg.solve(R, Q.T)
+    return np.asarray(Q @ np.linalg.solve(R, Q.T), dtype=np.float64)

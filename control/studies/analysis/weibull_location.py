@@ -11,7 +11,15 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from control.studies.analysis.weibull import SEED, Weibull, chance, estimates, likelihood, positive, statistics
+from control.studies.analysis.weibull import (
+    SEED,
+    Weibull,
+    chance,
+    estimates,
+    likelihood,
+    positive,
+    statistics,
+)
 
 Array = NDArray[np.float64]
 NEAREST, FARTHEST = -4.0, 1.5

@@ -95,9 +95,7 @@ def _apart(found: Samples) -> tuple[Optimum, ...]:
         at = [found.axes.index(other) for other in others]
         combinations = dict.fromkeys(tuple(point[column] for column in at) for point in found.points)
         if len(combinations) <= MOST_COMBINATIONS:
-            each = (
-                optimum(found, axis, dict(zip(others, values, strict=True))) for values in combinations
-            )
+            each = (optimum(found, axis, dict(zip(others, values, strict=True))) for values in combinations)
             optima += [one for one in each if one is not None]
     return tuple(optima)
 

@@ -9,6 +9,7 @@ hold a current back, in the corners of the plate, the direction stays too and th
 from __future__ import annotations
 
 import math
+
 from control.backlash import ENGAGED_AFTER, Backlash, pull_after
 from control.field import Corner
 from control.field_model import FieldModel

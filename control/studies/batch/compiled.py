@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import random
 from dataclasses import astuple, dataclass
 from functools import lru_cache
@@ -13,7 +14,7 @@ from numpy.typing import NDArray
 from control.controllers import Controller
 from control.controllers.geometric import Geometric
 from control.controllers.gradient import Gradient
-from control.gait import Counts, Gait, TimeLaw
+from control.gait import Counts, Gait, TimeLaw, advance_of_sweep
 from control.metrics import Metrics
 from control.simulation.plant import PRESSING_ELEVATION, REST_FIELD
 from control.simulation.plants import NoSlipKind, SlipKind
@@ -27,8 +28,8 @@ from control.studies.batch.plain import require_inside, start_of
 if TYPE_CHECKING:
     from control.studies.plan import PlannedRun
 
-FIRST_DRAWS = 400
-"""Random numbers that are drawn for a run at first: those of 130 switches; twice as many when they do not suffice."""
+SPARE = 1.3
+"""Switches that random numbers are drawn for at first, per switch of a robot that keeps to its path."""
 
 _courses = Courses()
 
@@ -63,9 +64,9 @@ def walk_prepared(prepared: Prepared) -> Metrics:
     run, task, course = prepared.run, prepared.task, prepared.course
     start, setup = start_of(run), run.setup
     speed = 2.0 * task.tilt / setup.ramp
-    draw, draws = random.Random(run.seed).gauss, list[float]()
+    draw, draws, more = random.Random(run.seed).gauss, list[float](), _first_draws(course, task)
     while True:
-        draws += [draw(0.0, 1.0) for _ in range(max(FIRST_DRAWS, len(draws)))]
+        draws += [draw(0.0, 1.0) for _ in range(max(more, len(draws)))]
         robot = _robot(prepared.table, draws, setup.length)
         begun = Start(start.x, start.y, start.heading)
         outcome = walk_compiled(task, begun, Course(course.points, course.ahead), robot, speed)
@@ -76,6 +77,12 @@ def walk_prepared(prepared: Prepared) -> Metrics:
     tally = outcome.tally
     counts = Counts(tally.steps, tally.sweeps, tally.reversals)
     return outcome.sums.metrics(setup.length, counts, course.duration)
+
+
+def _first_draws(course: LaidOut, task: Task) -> int:
+    """As many as the run will probably use; twice as many are drawn where they do not suffice."""
+    switches = SPARE * course.length / advance_of_sweep(min(task.sweep, math.pi), task.length)
+    return 2 * DRAWS_OF_A_SWITCH + math.ceil(DRAWS_OF_A_SWITCH * switches)
 
 
 def _table(run: PlannedRun) -> SlipParameters | None:

@@ -12,10 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from control.controllers.geometric import nearest_pivot, swing_rate
-from control.controllers.gradient import gone_on, is_at_rest_too_far, lowest_on
+from control.controllers.gradient import Cost, gone_on, is_at_rest_too_far, lowest_on
 from control.gait import remaining_turn, sweep_end
 from control.metrics import Sums
-from control.model import PIVOT_A, Pivot, opposite
+from control.model import PIVOT_A, Pivot, distance, opposite
 from control.studies.batch.bench import REST, TICK
 from control.studies.batch.compiled_field import FieldNow, Sight, advanced, looked
 from control.studies.batch.compiled_robot import DRAWS_OF_A_SWITCH, Body, Robot, taken_up
@@ -53,20 +53,6 @@ class Start(NamedTuple):
     x: float
     y: float
     heading: float
-
-
-class Compared(NamedTuple):
-    """The fields of `control.controllers.gradient.Cost`, in their order."""
-
-    x: float
-    y: float
-    heading: float
-    half: float
-    look_ahead: float
-    desired_x: float
-    desired_y: float
-    wanted: float
-    weight: float
 
 
 class Stance(NamedTuple):
@@ -139,7 +125,7 @@ def decided_by_gradient(
 ) -> tuple[Pivot, float]:
     """As `Gradient` without a wanted heading. ahead: the desired point after the look-ahead, m."""
     half, tau, pivot = 0.5 * task.length, task.look_ahead, stance.pivot
-    cost = Compared(body.x, body.y, body.heading, half, tau, ahead[0], ahead[1], 0.0, 0.0)
+    cost = Cost(body.x, body.y, body.heading, half, tau, ahead[0], ahead[1], 0.0, 0.0)
     lowest, rate = lowest_on(cost, pivot, task.max_rate)
     if stance.may_switch:
         other = opposite(pivot)
@@ -183,11 +169,6 @@ def turning_at(field: FieldNow, rate: float) -> FieldNow:
     return FieldNow(field.time, field.heading, field.elevation, field.goal, field.target, rate)
 
 
-def apart(x: float, y: float) -> float:
-    """Length of a difference of places, m."""
-    return math.sqrt(x * x + y * y)
-
-
 def added(sums: Sums, error: float, travelled: float) -> Sums:
     """One tick more: its error and the way travelled since the last, m."""
     return Sums(
@@ -218,8 +199,8 @@ def walked(task: Task, start: Start, course: Course, robot: Robot, speed: float)
             sight = looked(sight, before, field, body)
             if not (abs(body.x) <= task.edge and abs(body.y) <= task.edge):
                 return Outcome(LEFT, tick, body.x, body.y, sums, tally)
-        error = apart(body.x - course.points[tick, 0], body.y - course.points[tick, 1])
-        sums = added(sums, error, apart(body.x - last_x, body.y - last_y))
+        error = distance(body.x, body.y, course.points[tick, 0], course.points[tick, 1])
+        sums = added(sums, error, distance(body.x, body.y, last_x, last_y))
         last_x, last_y = body.x, body.y
         sweeps = 0
         if not stance.may_switch:
@@ -245,7 +226,6 @@ PARTS = (
     counted,
     told,
     turning_at,
-    apart,
     added,
     walked,
 )

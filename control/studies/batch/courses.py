@@ -24,11 +24,15 @@ MOST_TICKS = 1_000_000
 
 @dataclass(frozen=True, slots=True)
 class LaidOut:
-    """points: (n, 2), the desired points, m.  ahead: the same after the look-ahead.  duration: of the run, s."""
+    """points: (n, 2), the desired points, m.  ahead: the same after the look-ahead.  duration: of the run, s.
+
+    length: of the way from the first point to the last, m.
+    """
 
     points: NDArray[np.float64]
     ahead: NDArray[np.float64]
     duration: float
+    length: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,15 +87,19 @@ def lay_out(wanted: Wanted) -> LaidOut | None:
     if not min(reference.duration, wanted.duration or np.inf) <= MOST_TICKS * TICK:
         return None
     ahead = wanted.look_ahead
-    rows, elapsed = list[tuple[float, ...]](), 0.0
+    rows, times = list[tuple[float, ...]](), list[float]()
     for elapsed in _ticks(reference, wanted.duration):
+        times.append(elapsed)
         point = reference.point
         rows.append(point if ahead is None else (*point, *reference.trajectory.point(reference.time + ahead)))
     course = np.array(rows)
     if not np.isfinite(course).all():
         return None
     points = np.ascontiguousarray(course[:, :2])
-    return LaidOut(points, points if ahead is None else np.ascontiguousarray(course[:, 2:]), elapsed)
+    length = float(np.hypot(*np.diff(points, axis=0).T).sum())
+    return LaidOut(
+        points, points if ahead is None else np.ascontiguousarray(course[:, 2:]), times[-1], length
+    )
 
 
 def _ticks(reference: Reference, cap: float | None) -> Iterator[float]:

@@ -14,15 +14,15 @@ Kernel = Callable[[Task, Start, Course, Robot, float], Outcome]
 
 
 def _kernel(laws: str) -> Kernel:
-    def walk(task, start, course, robot, speed):  # noqa: ANN001, ANN202 (types are inferred by the compiler)
+    def walk(task, start, course, robot, speed):
         # What a kept kernel is known by includes the variables that it closes over, and so the laws.
         _ = laws
         return walked(task, start, course, robot, speed)
 
     try:
-        return njit(cache=True, nogil=True)(walk)
+        return njit(cache=True, nogil=True, error_model="numpy")(walk)
     except RuntimeError:  # no folder that may be written to: compile anew in each process
-        return njit(nogil=True)(walk)
+        return njit(nogil=True, error_model="numpy")(walk)
 
 
 walk_compiled: Kernel = _kernel(LAWS)

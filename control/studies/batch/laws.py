@@ -18,6 +18,7 @@ from control.studies.batch import compiled_field, compiled_robot, compiled_walk
 
 FORMULAS = (
     model.wrap,
+    model.distance,
     model.pivot_point,
     model.opposite,
     gait.remaining_turn,
@@ -35,7 +36,6 @@ FORMULAS = (
     plant.slid,
     geometric.nearest_pivot,
     geometric.swing_rate,
-    geometric.apart,
     gradient.cost_errors,
     gradient.cost_value,
     gradient.cost_by_rate,

@@ -76,7 +76,7 @@ def learned(definition: StudyDefinition, table: StudyTable) -> Iterator[Drawn]:
         from control.studies.tuning import learned_surface
         from server.reports.study.surface import draw_surface
 
-        surface = learned_surface(definition, table)
+        surface = learned_surface(definition, {row.index: row for row in table.rows})
         if surface is not None:
             caption = "What the search has learned: the expected error and its uncertainty."
             yield Drawn("surface", caption, draw_surface(surface))

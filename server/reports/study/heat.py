@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from typing import Any
 
-import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
@@ -41,7 +41,7 @@ def heat(samples: Samples, layout: Layout) -> Figure:
         _map(one, samples, layout, (value, heights, scale))
     for spare in axes[len(parts) :]:
         spare.set_axis_off()
-    drawn = matplotlib.cm.ScalarMappable(scale, COLOURS)
+    drawn = ScalarMappable(scale, COLOURS)
     bar = figure.colorbar(drawn, ax=axes[: len(parts)], shrink=0.9)
     bar.set_label(short_metric(samples.metric), fontsize=9)
     bar.ax.tick_params(labelsize=8)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -16,6 +17,8 @@ from server.reports.study.naming import number
 COLOURS = (ORANGE, BLUE, GREEN, PURPLE)
 FINE = 300
 MOST_BINS = 30
+ROOM = 1.25
+"""Of the highest bar, so that the legend has a place above it."""
 
 
 def histograms(panels: Mapping[str, Mapping[str, Distribution]], metric: str) -> Figure:
@@ -27,7 +30,8 @@ def histograms(panels: Mapping[str, Mapping[str, Distribution]], metric: str) ->
         for colour, (name, distribution) in zip(COLOURS, found.items(), strict=False):
             _histogram(one, distribution, (colour, name, edges))
         label(one, metric, "runs", title)
-        one.legend(fontsize=7, frameon=False)
+        one.set_ylim(top=ROOM * one.get_ylim()[1])
+        one.legend(fontsize=7, frameon=False, loc="upper left")
     for spare in axes[len(panels) :]:
         spare.set_axis_off()
     figure.legend(
@@ -40,7 +44,11 @@ def _edges(panels: Mapping[str, Mapping[str, Distribution]]) -> np.ndarray:
     """The same bins everywhere, so that panels compare; Freedman and Diaconis' width, not more than MOST_BINS."""
     values = np.concatenate([one.values for found in panels.values() for one in found.values()])
     if not len(values) or not np.ptp(values) > 0.0:
-        return np.linspace(0.0, 1.0, 2) if not len(values) else values[0] + 0.05 * values[0] * np.array([-1.0, 1.0])
+        return (
+            np.linspace(0.0, 1.0, 2)
+            if not len(values)
+            else values[0] + 0.05 * values[0] * np.array([-1.0, 1.0])
+        )
     widths = [
         2.0 * (np.quantile(one.values, 0.75) - np.quantile(one.values, 0.25)) / np.cbrt(len(one.values))
         for found in panels.values()
@@ -64,7 +72,7 @@ def _histogram(axes: Axes, found: Distribution, look: tuple[str, str, np.ndarray
         axes.plot(x, height * found.located.law.density(x), color=colour, linewidth=1.0, linestyle=":")
 
 
-def _laws(axes: Axes) -> tuple[list[object], list[str]]:
+def _laws(axes: Axes) -> tuple[list[Artist], list[str]]:
     whole = axes.plot([], [], color=BLACK, linewidth=1.4)[0]
     dotted = axes.plot([], [], color=BLACK, linewidth=1.0, linestyle=":")[0]
     return [whole, dotted], ["Weibull from 0", "Weibull with a location of its own"]

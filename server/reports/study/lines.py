@@ -54,7 +54,9 @@ def _panel(axes: Axes, samples: Samples, layout: Layout, panel: Panel) -> None:
     for place, (curve, colour) in enumerate(zip(chosen, colours(len(chosen)), strict=True)):
         aside = ASIDE * (place - 0.5 * (len(chosen) - 1))
         _curve(axes, samples, layout, curve, (colour, MARKS[place % len(MARKS)], aside))
-    title = "" if layout.panel is None else f"{axis_name(layout.panel)} {value_text(layout.panel, panel.value)}"
+    title = (
+        "" if layout.panel is None else f"{axis_name(layout.panel)} {value_text(layout.panel, panel.value)}"
+    )
     label(axes, axis_title(layout.x), short_metric(samples.metric), title)
     axes.grid(axis="y", color="#e6e6e6", linewidth=0.6)
     levels = samples.levels(layout.x)
@@ -63,9 +65,7 @@ def _panel(axes: Axes, samples: Samples, layout: Layout, panel: Panel) -> None:
         axes.margins(x=0.2)
 
 
-def _curve(
-    axes: Axes, samples: Samples, layout: Layout, curve: Curve, look: tuple[Any, str, float]
-) -> None:
+def _curve(axes: Axes, samples: Samples, layout: Layout, curve: Curve, look: tuple[Any, str, float]) -> None:
     colour, mark, aside = look
     levels = samples.levels(layout.x)
     span = float(levels[-1] - levels[0]) if samples.numeric(layout.x) else len(levels) - 1.0

@@ -13,7 +13,25 @@ from control.studies.table import METRICS
 UNITS = {"deg": "°", "percent": "%", "ohm": "Ω", "uT": "µT"}
 """Written otherwise than in a name; every other unit in a name is written as it is."""
 KNOWN_UNITS = frozenset(
-    {"deg", "percent", "ohm", "uT", "mm", "s", "ms", "mT", "Hz", "rad", "A", "W", "V", "mg", "mN", "mm_s", "mm_s2"}
+    {
+        "deg",
+        "percent",
+        "ohm",
+        "uT",
+        "mm",
+        "s",
+        "ms",
+        "mT",
+        "Hz",
+        "rad",
+        "A",
+        "W",
+        "V",
+        "mg",
+        "mN",
+        "mm_s",
+        "mm_s2",
+    }
 )
 DIGITS = 3
 """Of a metric."""

@@ -46,7 +46,10 @@ PRINTED = (
 
 def printed_row(definition: StudyDefinition, values: Mapping[str, Any]) -> PrintedRow | None:
     """The paper's row for a set of a study; values: of its axes, lab units. The path has to be the eight."""
-    if value_of(definition, values, "trajectory") != "eight" or value_of(definition, values, STEP) != PATH_STEP_S:
+    if (
+        value_of(definition, values, "trajectory") != "eight"
+        or value_of(definition, values, STEP) != PATH_STEP_S
+    ):
         return None
     label = NAMES.get(str(value_of(definition, values, "controller")))
     place = (label, value_of(definition, values, SWEEP), value_of(definition, values, TILT))

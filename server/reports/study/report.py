@@ -53,5 +53,6 @@ def _order(definition: StudyDefinition) -> Sequence[int] | None:
 def _written(drawn: Drawn, folder: Path) -> Picture:
     png = drawing.png(drawn.figure)
     (folder / f"{drawn.name}.png").write_bytes(png)
+    drawn.figure.set_layout_engine("none")  # what was laid out for the picture stays
     (folder / f"{drawn.name}.svg").write_bytes(drawing.svg(drawn.figure))
     return Picture(drawn.name, drawn.caption, png)

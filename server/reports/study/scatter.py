@@ -26,9 +26,13 @@ def scatter(samples: Samples) -> Figure:
         one.plot(x, means, "o", color=BLUE, markersize=3.5, alpha=0.7, label="sets")
         if np.any(np.isfinite(means)):
             best = int(np.nanargmin(means))
-            one.plot(x[best], means[best], "D", color=ORANGE, markeredgecolor=BLACK, markersize=6, label="best")
+            one.plot(
+                x[best], means[best], "D", color=ORANGE, markeredgecolor=BLACK, markersize=6, label="best"
+            )
         if names:
-            one.set_xticks(range(len(names)), names[:MOST_LEVELS] + [""] * (len(names) - MOST_LEVELS), fontsize=8)
+            one.set_xticks(
+                range(len(names)), names[:MOST_LEVELS] + [""] * (len(names) - MOST_LEVELS), fontsize=8
+            )
             one.margins(x=0.2)
         label(one, axis_title(axis), short_metric(samples.metric))
     for spare in axes[len(varied) :]:
@@ -42,4 +46,6 @@ def _places(samples: Samples, axis: str) -> tuple[Any, list[str]]:
     if samples.numeric(axis):
         return samples.numbers(axis), []
     levels = samples.levels(axis)
-    return np.array([levels.index(value) for value in samples.column(axis)], dtype=float), [str(one) for one in levels]
+    return np.array([levels.index(value) for value in samples.column(axis)], dtype=float), [
+        str(one) for one in levels
+    ]

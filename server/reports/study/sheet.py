@@ -85,7 +85,9 @@ def _body(content: Content) -> Iterator[str]:
 
 def asked(definition: StudyDefinition, found: Analysis) -> str:
     """What was to be carried out."""
-    where = f"a batch on the plant {definition.plant.name}" if definition.on == "batch" else "a campaign on a rig"
+    where = (
+        f"a batch on the plant {definition.plant.name}" if definition.on == "batch" else "a campaign on a rig"
+    )
     axes = ", ".join(axis_name(axis) for axis in found.samples.axes) or "nothing"
     return (
         f"{where[0].upper()}{where[1:]}: {definition.design} over {axes}; repeats {definition.repeats}, order "
@@ -115,7 +117,9 @@ def _table(table: Table, name: str) -> Iterator[str]:
     header, *rows = table
     yield page.table([header, *(tuple(map(_shown, row)) for row in rows[:MOST_ROWS])])
     if len(rows) > MOST_ROWS:
-        yield page.paragraph(f"The first {MOST_ROWS} of {len(rows)} rows; {name}.csv beside this page has all.")
+        yield page.paragraph(
+            f"The first {MOST_ROWS} of {len(rows)} rows; {name}.csv beside this page has all."
+        )
 
 
 def _shown(cell: Cell) -> Cell:

@@ -47,7 +47,18 @@ def sets(found: Analysis) -> Table:
 
 
 def optima(found: tuple[Optimum, ...]) -> Table:
-    header = ("along", "at", "smallest at", "low", "high", "value", "value low", "value high", "so it is", "best level")
+    header = (
+        "along",
+        "at",
+        "smallest at",
+        "low",
+        "high",
+        "value",
+        "value low",
+        "value high",
+        "so it is",
+        "best level",
+    )
     return [header, *(_optimum(one) for one in found)]
 
 
@@ -111,7 +122,9 @@ def scatters(found: Analysis, definition: StudyDefinition) -> Table:
         paper = printed_row(definition, values)
         note = ("", "", "")
         if paper is not None:
-            fits = "consistent" if paper.consistent else f"inconsistent: deviation² is {paper.deviation**2:.2f}"
+            fits = (
+                "consistent" if paper.consistent else f"inconsistent: deviation² is {paper.deviation**2:.2f}"
+            )
             note = (paper.variance, paper.deviation, fits)
         rows.append((
             point_text(values) or "all runs", len(one.values), _rounded(one.mean.value), _rounded(one.variance.value),

@@ -36,7 +36,7 @@ def trajectories(walks: Sequence[Walked], columns: int) -> Figure:
         one.set_xlim(low[0], high[0])
         one.set_ylim(low[1], high[1])
         one.set_aspect("equal")
-        label(one, "x, mm", "y, mm", f"{walk.title}: ME {walk.error:.3g}")
+        label(one, "x, mm", "y, mm", f"{walk.title}\nME {walk.error:.3g}")
         one.title.set_fontsize(8)
     for spare in axes[len(walks) :]:
         spare.set_axis_off()

@@ -13,7 +13,7 @@ from control.studies.analysis.whole import Analysis
 from control.studies.definition import StudyDefinition
 from control.studies.table import StudyRow, StudyTable
 from server.reports.drawing import MM
-from server.reports.study.layout import heat_layout, spread
+from server.reports.study.layout import spread
 from server.reports.study.naming import point_text
 from server.reports.study.trajectories import Walked
 
@@ -54,19 +54,19 @@ def paths(found: Analysis, table: StudyTable, source: Source) -> Paths | None:
 def chosen_sets(found: Analysis) -> tuple[list[int], int]:
     """Rows of the sets in samples.points, and how many stand side by side.
 
-    Of a grid: the ends and the middle of its two longest axes, the other axes as in the best set. Else the best, the
-    middle and the worst set.
+    Of a grid: the ends and the middle of the two axes with the fewest levels, the others as in the best set, as in the
+    paper's figures. Else the best, the middle and the worst set.
     """
     samples = found.samples
-    layout = heat_layout(samples)
+    axes = sorted(samples.varied(), key=lambda axis: len(samples.levels(axis)))[:2]
     if found.best is None:
         return [], 1
-    if samples.scattered or layout is None or layout.line is None:
+    if samples.scattered or len(axes) < 2:
         return _ranked(found), SIDE
-    across, up = spread(samples.levels(layout.x), SIDE), spread(samples.levels(layout.line), SIDE)
+    across, up = (spread(samples.levels(axis), SIDE) for axis in axes)
     at = {point: place for place, point in enumerate(samples.points)}
     wanted = [
-        tuple({**found.best.values, layout.x: right, layout.line: high}[axis] for axis in samples.axes)
+        tuple({**found.best.values, axes[0]: right, axes[1]: high}[axis] for axis in samples.axes)
         for high in up
         for right in across
     ]

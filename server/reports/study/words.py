@@ -97,8 +97,8 @@ def _apart(found: Analysis) -> Iterator[str]:
         parts = ", ".join(f"{kind.value} in {count}" for kind, count in kinds.most_common())
         inside = sorted(one.where.value for one in each if one.kind is Kind.INSIDE)
         ends = f"; the inner ones lie from {_ends(axis, inside)}" if inside else ""
-        others = len(each)
-        yield f"Along {axis_name(axis)} at each of the {others} combinations of the others, the optimum is {parts}{ends}."
+        name = axis_name(axis)
+        yield f"Along {name} at each of the {len(each)} combinations of the others, the optimum is {parts}{ends}."
 
 
 def _ends(axis: str, ascending: Sequence[float]) -> str:
@@ -166,7 +166,9 @@ def _drift(found: Analysis, drift: Drift) -> str:
             f"{metric} drifted while the study went on: by {change} from the first run to the last, whatever the set "
             f"(p {chance_text(drift.p)}). Blocked or random order keeps that from looking like an effect."
         )
-    return f"No drift over the order of the runs is noticed: {change} over the study (p {chance_text(drift.p)})."
+    return (
+        f"No drift over the order of the runs is noticed: {change} over the study (p {chance_text(drift.p)})."
+    )
 
 
 def _percent(share: float) -> str:

@@ -123,7 +123,8 @@ class Attendant:
     def _cool(self, snapshot: Snapshot) -> str:
         """Rest with the coils off; that takes its time, and is no reason to give up."""
         hottest = max(snapshot.coil_heat, default=OFF_AT)
-        self.say(f"waiting for the coils to cool: {hottest:.0%} → {self._rules.cool_to:.0%}")
+        at, to = math.ceil(100.0 * hottest), math.floor(100.0 * self._rules.cool_to)
+        self.say(f"waiting for the coils to cool: {at} % → {to} %")
         if snapshot.rig is RigState.ARMED:
             self._try(lambda loop: loop.rest(COOLING), "cooling")
         return ""

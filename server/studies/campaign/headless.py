@@ -92,8 +92,10 @@ class HeadlessOperator:
                 self._run = replace(self._run, state=ended.state, reason=ended.reason, metrics=ended.metrics)
 
     def _close(self) -> None:
+        """A run that was interrupted ends, with zero current, and its recording says so."""
         try:
             self._loop.abort_run("ended", INTERRUPTED)
             self._heed_news()
+            self._recording.leave()
         finally:
             self._machine.close()

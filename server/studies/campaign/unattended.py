@@ -39,7 +39,8 @@ def walk_campaign(
 
 
 class _Ends:
-    """What signals do: the coils first, and then the campaign; a second one ends also what hangs."""
+    """What signals do: the coils first, and then the campaign. Ctrl-C is a person's stop, others are the program's
+    end; a second one ends also what hangs."""
 
     def __init__(self, machine: Machine, campaign: Campaign) -> None:
         self._machine = machine
@@ -48,7 +49,9 @@ class _Ends:
 
     def end(self, number: int, _frame: FrameType | None) -> None:
         self._machine.stop_coils()
-        self._campaign.stop(f"stopped by {signal.Signals(number).name}")
+        is_person = number == signal.SIGINT
+        reason = "stopped by the operator" if is_person else f"ended by {signal.Signals(number).name}"
+        self._campaign.stop(reason, is_end=not is_person)
         if self._is_ending:
             raise KeyboardInterrupt
         self._is_ending = True

@@ -31,6 +31,12 @@ def row(plan, index, error):
     return StudyRow(index, run.set, run.repeat, run.seed, "finished", run.values, metrics)
 
 
+def start_of_run(plan, index):
+    start = plan.run(index).start
+    assert start is not None
+    return start
+
+
 orders = st.sampled_from(["blocked", "random", "listed"])
 
 
@@ -112,16 +118,16 @@ def test_a_run_carries_its_values_in_si_to_another_process():
 
 
 def test_a_run_starts_at_the_first_point_of_its_path_heading_along_it():
-    start = definition().plan().run(0).start
+    start = start_of_run(definition().plan(), 0)
     assert (start.x, start.y) == pytest.approx((0.0, -0.040))
     assert abs(start.heading) == pytest.approx(math.pi, abs=1e-3)
 
 
 def test_a_start_of_ones_own_is_kept_and_its_scatter_is_drawn_for_each_run():
     own = {"x_mm": 3.0, "heading_deg": 90.0}
-    assert definition(start=own).plan().run(0).start.x == pytest.approx(0.003)
+    assert start_of_run(definition(start=own).plan(), 0).x == pytest.approx(0.003)
     plan = definition(start={**own, "scatter_mm": 1.0, "scatter_deg": 5.0}, repeats=200).plan()
-    starts = np.array([(s.x, s.y, s.heading) for s in (plan.run(index).start for index in range(1800))])
+    starts = np.array([(s.x, s.y, s.heading) for s in (start_of_run(plan, index) for index in range(1800))])
     assert starts.mean(axis=0) == pytest.approx((0.003, -0.040, math.pi / 2), abs=0.01)
     assert starts.std(axis=0) == pytest.approx((0.001, 0.001, math.radians(5.0)), rel=0.06)
     assert plan.run(17).start == plan.run(17).start
@@ -134,7 +140,7 @@ def test_a_latin_hypercube_has_one_point_in_each_part_of_each_axis(seed, sets):
         {"of": "gait.tilt_deg", "from": 10, "to": 35},
         {"of": "controller.gain", "from": 1.0, "to": 9.0},
     ]
-    plan = definition(design="latin", latin={"sets": sets}, axes=axes, seed=seed).plan()
+    plan = FixedPlan(definition(design="latin", latin={"sets": sets}, axes=axes, seed=seed))
     for name, low, high in (("gait.tilt_deg", 10.0, 35.0), ("controller.gain", 1.0, 9.0)):
         shares = [(one[name] - low) / (high - low) for one in plan.sets]
         assert sorted(int(share * sets - 1e-9) for share in shares) == list(range(sets))
@@ -145,7 +151,7 @@ def test_a_latin_hypercube_shares_names_and_steps_out_evenly():
         {"of": "controller", "values": ["geometric", "planner"]},
         {"of": "gait.sweep_deg", "from": 10, "to": 40, "step": 10},
     ]
-    plan = definition(design="latin", latin={"sets": 16}, axes=axes).plan()
+    plan = FixedPlan(definition(design="latin", latin={"sets": 16}, axes=axes))
     assert Counter(one["controller"] for one in plan.sets) == {"geometric": 8, "planner": 8}
     assert Counter(one["gait.sweep_deg"] for one in plan.sets) == {10: 4, 20: 4, 30: 4, 40: 4}
 

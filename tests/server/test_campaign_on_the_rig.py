@@ -1,0 +1,162 @@
+"""A campaign on the rig that is served: it has the rig to itself, and whoever stops the rig stops it."""
+
+import asyncio
+import contextlib
+
+import httpx
+import pytest
+
+from control.snapshot import RigState
+from control.studies.definition import StudyDefinition
+from server.app import create_app
+from server.archive import Archive
+from server.assembly import build_machine
+from server.catalogue.records import RunQuery
+from server.rig import Rig
+from server.settings import RigFile
+from server.studies.campaign import Campaign
+from server.studies.campaign.on_rig import RigOperator
+from server.studies.store import StudyStore
+from tests.server.campaign_bench import CIRCLE, SHORT
+
+pytestmark = pytest.mark.anyio
+
+PATIENCE = 60.0
+TWO_RUNS = {"axes": [{"of": "gait.tilt_deg", "values": [22, 28]}]}
+
+
+class Bench:
+    """A served rig that runs as fast as it goes."""
+
+    def __init__(self, rig, archive, api):
+        self.rig, self.archive, self.api = rig, archive, api
+        self.store = StudyStore(archive.folder.parent, archive.catalogue)
+        self.words = []
+
+    def study(self, **changes):
+        return self.store.create(StudyDefinition.from_json({**SHORT, **TWO_RUNS, **changes}))
+
+    def begin(self, study):
+        """The campaign, and what becomes of it."""
+        operator = RigOperator(self.rig, consent=False)
+        campaign = Campaign(study, operator, self.archive.catalogue, lambda now: self.words.append(now.words))
+        return campaign, asyncio.create_task(asyncio.to_thread(campaign.run))
+
+    async def until_said(self, words):
+        async with asyncio.timeout(PATIENCE):
+            while not any(words in each for each in self.words):
+                await asyncio.sleep(0.005)
+
+    async def refused(self, method, path, body=None):
+        """Why it was refused, in the server's words."""
+        answer = await self.api.request(method, path, json=body)
+        assert answer.status_code == 409, answer.text
+        return answer.json()["detail"]
+
+
+@pytest.fixture
+async def bench(serve, tmp_path):
+    def build(settings):
+        return build_machine(settings, realtime=False)
+
+    archive = Archive.open(tmp_path, patient=True)
+    rig = Rig(build(RigFile()), build, archive.recorder)
+    async with (
+        serve(create_app(rig, archive)) as at,
+        httpx.AsyncClient(base_url=at.url + "/api/v1", timeout=PATIENCE) as api,
+    ):
+        yield Bench(rig, archive, api)
+
+
+async def test_a_campaign_has_the_rig_to_itself_and_leaves_it_disarmed(bench):
+    study = bench.study()
+    campaign, ended = bench.begin(study)
+    await bench.until_said("walking")
+    words = "the study 'short' is running; stop it first"
+    assert await bench.refused("POST", "/runs", {}) == words
+    assert await bench.refused("POST", "/manual", {"pivot": 1, "rate_deg_s": 20.0}) == words
+    assert await bench.refused("PATCH", "/rig", {"robot": {"length_mm": 11.0}})
+    outcome = await asyncio.wait_for(ended, PATIENCE)
+    assert outcome.state == study.state == "finished", outcome
+    assert [row.state for row in study.rows()] == ["finished", "finished"]
+    assert bench.rig.snapshot.rig is RigState.DISARMED
+    listed = {run["id"]: run for run in (await bench.api.get(f"/runs?study={study.id}")).json()["runs"]}
+    assert set(listed) == {row.run_id for row in study.rows()}
+    assert campaign.activity.words == "run 2 of 2: finished"
+    assert (await bench.api.post("/arm")).status_code == 200, "it is free again"
+
+
+@pytest.mark.parametrize(
+    ("path", "reason", "state"),
+    [
+        ("/estop", "emergency stop", RigState.FAULT),
+        ("/disarm", "the operator disarmed the rig", RigState.DISARMED),
+        ("/runs/current/stop", "the operator stopped its run", RigState.DISARMED),
+    ],
+)
+async def test_whoever_stops_the_rig_stops_the_campaign(bench, path, reason, state):
+    study = bench.study(duration_s=20.0)
+    _, ended = bench.begin(study)
+    await bench.until_said("run 1 of 2: walking")
+    assert (await bench.api.post(path)).status_code == 200
+    outcome = await asyncio.wait_for(ended, PATIENCE)
+    assert (outcome.state, outcome.reason) == ("stopped", reason)
+    assert bench.rig.snapshot.rig is state
+    assert study.rows() == []
+
+
+async def test_a_stopped_campaign_goes_on_once_a_person_has_reset_the_rig(bench):
+    study = bench.study()
+    _, ended = bench.begin(study)
+    await bench.until_said("run 2 of 2: walking")
+    await bench.api.post("/estop")
+    assert (await asyncio.wait_for(ended, PATIENCE)).state == "stopped"
+    (before,) = study.rows()
+    bench.words.clear()
+    _, ended = bench.begin(study)
+    await bench.until_said("waiting for a person: reset and arm the rig (emergency stop)")
+    await bench.api.post("/reset")
+    outcome = await asyncio.wait_for(ended, PATIENCE)
+    assert outcome.state == "finished", outcome
+    assert before in study.rows()
+    assert len(study.rows()) == 2
+
+
+async def test_a_paused_run_of_a_campaign_is_resumed_by_a_person(bench):
+    study = bench.study(duration_s=3.0)
+    _, ended = bench.begin(study)
+    await bench.until_said("run 1 of 2: walking")
+    paused = await bench.api.post("/runs/current/pause")
+    assert paused.status_code == 200, paused.text
+    await asyncio.sleep(0.2)
+    assert bench.rig.snapshot.rig is RigState.HELD
+    assert (await bench.api.post("/runs/current/resume")).status_code == 200
+    assert (await asyncio.wait_for(ended, PATIENCE)).state == "finished"
+    assert len(bench.archive.catalogue.page(RunQuery(study=study.id)).runs) == 2
+
+
+async def test_a_way_back_can_be_paused_and_looked_at_though_it_is_no_run(bench):
+    far = {"name": "circle", "parameters": {**CIRCLE, "centre_y_mm": 10.0}}
+    study = bench.study(trajectory=far)
+    campaign, ended = bench.begin(study)
+    await bench.until_said("walking back")
+    async with asyncio.timeout(PATIENCE):
+        while bench.rig.snapshot.run is None:
+            await asyncio.sleep(0.005)
+    paused = await bench.api.post("/runs/current/pause")
+    assert (paused.status_code, paused.json()["rig"]) == (200, "held")
+    assert (await bench.api.get("/runs")).json()["runs"] == []
+    campaign.stop("enough")
+    assert (await asyncio.wait_for(ended, PATIENCE)).reason == "enough"
+    assert (await bench.api.get("/runs")).json()["runs"] == [], "a way back is no run"
+
+
+async def test_a_campaign_is_interrupted_when_the_rig_is_closed(bench):
+    study = bench.study(duration_s=20.0)
+    _, ended = bench.begin(study)
+    await bench.until_said("run 1 of 2: walking")
+    await bench.rig.stop()
+    outcome = await asyncio.wait_for(ended, PATIENCE)
+    assert outcome.state == study.state == "interrupted"
+    with contextlib.suppress(Exception):
+        assert study.rows() == []
