@@ -96,6 +96,10 @@ class Rig(RigLife):
         self._trail.clear()
         self.runs.start(run)
 
+    def is_recorded(self, id: str) -> bool:
+        """Whether a run that is over is all in its recording and in the catalogue; from any thread."""
+        return self._recording.is_complete(id)
+
     async def change_run(self, change: Callable[[Selection], Selection]) -> Run:
         """`change` makes the new selection of the old one, so that two changes at once both count."""
         self.occupation.require_none()

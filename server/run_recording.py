@@ -105,6 +105,10 @@ class RunRecording:
             self._hung = replace(self._run, state=RunState.ABORTED, reason=reason)
             self._end(self._hung)
 
+    def is_complete(self, id: str) -> bool:
+        """Whether recording and catalogue have all that there will be of a run; from any thread."""
+        return self._recorder is None or self._recorder.written(id, 0.0)
+
     def leave(self) -> None:
         """The rig becomes another one; what is still recorded of the last run ends with this one."""
         self._hand_over(lambda recorder: recorder.finish())

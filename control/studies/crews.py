@@ -3,9 +3,6 @@
 from __future__ import annotations
 
 import os
-import signal
-import threading
-import time
 from collections.abc import Iterator
 from concurrent.futures import Future
 from concurrent.futures.process import BrokenProcessPool
@@ -13,11 +10,10 @@ from contextlib import contextmanager
 from typing import Protocol
 
 from control.studies.chunks import Chunk, Done, WorkersLost, work
+from control.studies.offspring import stay_with
 
 AHEAD = 3
 """Chunks given out for each worker: one that it does, and what it will do while somebody waits for a slow one."""
-LOOK = 0.5
-"""How often a worker looks whether its parent lives, s."""
 ONE_THREAD = {
     f"{name}_NUM_THREADS": "1" for name in ("OMP", "OPENBLAS", "MKL", "BLIS", "NUMBA", "VECLIB_MAXIMUM")
 }
@@ -79,18 +75,6 @@ def lost(error: BaseException) -> WorkersLost:
         "a worker process ended by itself; when memory was short, use fewer with --jobs "
         f"({str(error).splitlines()[0] if str(error) else type(error).__name__})"
     )
-
-
-def stay_with(parent: int) -> None:
-    """In a worker: end when the parent has ended, however it did; leave Ctrl-C to it."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    threading.Thread(target=_watch, args=(parent,), name="parent", daemon=True).start()
-
-
-def _watch(parent: int) -> None:
-    while os.getppid() == parent:
-        time.sleep(LOOK)
-    os._exit(1)
 
 
 @contextmanager

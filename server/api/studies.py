@@ -90,7 +90,7 @@ async def create(body: StudyBody, rig: TheRig, desk: TheDesk, shown: TheJson) ->
     study = await blocking(desk.store.create, definition)
     desk.tell_of("created", study)
     if body.begin:
-        await begun(desk, study, consent=body.consent)
+        await begun(desk, study, body.how)
     return await blocking(shown.short, study)
 
 
@@ -106,9 +106,9 @@ def with_words(check: Callable[[], None]) -> None:
         raise busy(error) from error
 
 
-async def begun(desk: StudyDesk, study: Study, *, consent: bool) -> None:
+async def begun(desk: StudyDesk, study: Study, how: Begin) -> None:
     try:
-        await desk.begin(study, consent=consent)
+        await desk.begin(study, consent=how.consent, jobs=how.jobs)
     except StudyBusy as error:
         raise busy(error) from error
 
@@ -170,7 +170,7 @@ async def resume(study: TheStudy, desk: TheDesk, shown: TheJson, body: Begin | N
     """Go on with what is left; nothing that has finished is done again."""
     if await blocking(lambda: study.state) == "finished":
         raise Rejected(Problem(409, "Finished", "This study has finished; nothing is left to be done."))
-    await begun(desk, study, consent=(body or Begin()).consent)
+    await begun(desk, study, body or Begin())
     return await blocking(shown.short, study)
 
 

@@ -35,17 +35,26 @@ class DefinitionBody(Edge):
         return definition_of(self.definition if self.definition is not None else _parsed(self.toml or ""))
 
 
-class StudyBody(DefinitionBody):
-    """A study to make. begin: at once.  consent: current through the coils of a real rig, while nobody looks."""
-
-    begin: bool = True
-    consent: bool = False
+Jobs = Annotated[int, Field(ge=0, le=256, description="Processes of a batch; 0: one a core.")]
 
 
 class Begin(Edge):
-    """Go on with a study. consent: as in `StudyBody`."""
+    """Go on with a study. consent: to current through the coils of a real rig, while nobody looks."""
 
     consent: bool = False
+    jobs: Jobs = 0
+
+
+class StudyBody(DefinitionBody):
+    """A study to make. begin: at once.  consent, jobs: as in `Begin`."""
+
+    begin: bool = True
+    consent: bool = False
+    jobs: Jobs = 0
+
+    @property
+    def how(self) -> Begin:
+        return Begin(consent=self.consent, jobs=self.jobs)
 
 
 Metric = Annotated[str | None, Field(max_length=40, json_schema_extra={"enum": list(METRICS)})]

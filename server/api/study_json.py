@@ -35,6 +35,8 @@ class StudyJson:
         self._desk = desk
         self._one_at_a_time = threading.Lock()
         self._digests: dict[str, Digest] = {}
+        self._learned: dict[str, tuple[int, dict[str, Any]]] = {}
+        """How many rows there were then, and what was learned of them."""
 
     def digest(self, study: Study) -> Digest:
         """Up to date."""
@@ -46,6 +48,7 @@ class StudyJson:
     def forget(self, id: str) -> None:
         with self._one_at_a_time:
             self._digests.pop(id, None)
+            self._learned.pop(id, None)
 
     def listed(self) -> list[dict[str, Any]]:
         """All studies, newest first."""
@@ -81,8 +84,21 @@ class StudyJson:
             "rows": digest.done,
             "axes": axes_json(study.definition),
             "sets": [set_json(*each, metric) for each in _sets(study.definition, digest)],
-            **_tuned(study),
+            **self._tuned(study, digest.done),
         }
+
+
+    def _tuned(self, study: Study, done: int) -> dict[str, Any]:
+        """What a search for the best has learned; worked out when there are new rows, since that takes a moment."""
+        if study.definition.design != "tune":
+            return NOT_TUNED
+        kept = self._learned.get(study.id)
+        if kept is None or kept[0] != done:
+            kept = self._learned[study.id] = done, _learned(study)
+        return kept[1]
+
+
+NOT_TUNED: dict[str, Any] = {"answer": None, "surface": None}
 
 
 def _current(work: Work | None, state: str) -> str:
@@ -170,10 +186,7 @@ def _words(definition: StudyDefinition, so_far: SetSoFar) -> str:
     return ", ".join(parts)
 
 
-def _tuned(study: Study) -> dict[str, Any]:
-    """What a search for the best has learned; null of any other study."""
-    if study.definition.design != "tune":
-        return {"answer": None, "surface": None}
+def _learned(study: Study) -> dict[str, Any]:
     from control.studies.tuning import answer, learned_surface
 
     rows = {row.index: row for row in study.rows()}

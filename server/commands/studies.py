@@ -150,13 +150,15 @@ def report(
 ) -> None:
     """Write the report of a study: an HTML page, its figures, its numbers."""
     load_plugins(plugin)
+    from server.catalogue.shelf import RECORDINGS
     from server.reports.study.report import write_report
 
     with opened_store(data) as store:
         study = chosen(store, id)
         folder = out or study.report_folder
         try:
-            page = write_report(study.table(), study.definition, folder)
+            recordings = study.folder.parents[1] / RECORDINGS
+            page = write_report(study.table(), study.definition, folder, recordings)
         except OSError as error:
             raise fail(
                 f"the report cannot be written to {folder}: {error.strerror or error}", FAILED

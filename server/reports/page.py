@@ -19,6 +19,9 @@ td.number{text-align:right;font-variant-numeric:tabular-nums}
 .reproduced{color:#00694b;font-weight:600}.not-reproduced{color:#b02a00;font-weight:600}
 .not-comparable{color:#555;font-weight:600}small{color:#555}
 pre{overflow-x:auto;font-size:.85rem;padding:.6rem;background:#f4f4f4;border-radius:6px}summary{cursor:pointer}
+.scroll td:first-child{white-space:nowrap}
+@media (max-width:40rem){.scroll td:first-child{white-space:normal}
+figure{overflow-x:auto}figure img{max-width:none;width:44rem}}
 @media (prefers-color-scheme:dark){
 body{color:#e6e6e6;background:#15181b}h2{border-color:#3a3f44}th,td{border-color:#33383d}
 figcaption,small,.not-comparable{color:#aab2b9}pre{background:#1f2428}

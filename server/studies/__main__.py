@@ -1,6 +1,7 @@
-"""`python -m server.studies VERB DATA ID [PLUGIN ...]`: what the server has done for its studies beside the rig.
+"""`python -m server.studies VERB JOBS DATA ID [PLUGIN ...]`: what the server has done for its studies beside the rig.
 
-carry-out: all that is left of a batch; progress goes to stdout, one JSON object a line.
+carry-out: all that is left of a batch, by so many processes (0: one a core); progress goes to stdout, one
+JSON object a line.
 report: its report into the study's folder.  plot: its figure, PNG, to stdout.
 A process of its own, since it takes seconds to hours of Python and the control loop must not share its interpreter
 with that. It ends with the server: its stdin does. Exit status: 0 done, 3 impossible, with the reason on stderr.
@@ -35,7 +36,7 @@ BETWEEN_LINES = 0.2
 """Progress is told so often at most, s."""
 
 
-def main(verb: str, data: str, id: str, *files: str) -> int:
+def main(verb: str, jobs: str, data: str, id: str, *files: str) -> int:
     os.nice(NICENESS)
     signal.signal(
         signal.SIGINT, signal.default_int_handler
@@ -43,7 +44,7 @@ def main(verb: str, data: str, id: str, *files: str) -> int:
     threading.Thread(target=_end_with_the_server, name="server's end", daemon=True).start()
     try:
         _load(files)
-        _do(verb, Path(data), id)
+        _do(verb, int(jobs), Path(data), id)
     except (StudyStoreError, StudyError, plugins.PluginError, OSError) as error:
         print(error, file=sys.stderr)
         return IMPOSSIBLE
@@ -65,25 +66,39 @@ def _load(files: Sequence[str]) -> None:
         plugins.load_file(Path(file))
 
 
-def _do(verb: str, data: Path, id: str) -> None:
+def _do(verb: str, jobs: int, data: Path, id: str) -> None:
     from server.catalogue.catalogue import Catalogue
     from server.studies.store import StudyStore
 
     with closing(Catalogue.open(data)) as catalogue:
         study = StudyStore(data, catalogue).open(id)
-        {"carry-out": _carry_out, "report": _report, "plot": _plot}[verb](study)
+        if verb == "carry-out":
+            _carry_out(study, jobs)
+        else:
+            {"report": _report, "plot": _plot}[verb](study)
 
 
-def _carry_out(study: Study) -> None:
-    from server.studies.carrying_out import carry_out_batch
+def _carry_out(study: Study, jobs: int) -> None:
+    from server.studies.carrying_out import Workforce, carry_out_batch
 
-    carry_out_batch(study, watch=Telling().heed)
+    carry_out_batch(study, Workforce(jobs or _jobs_worth_starting(study)), Telling().heed)
+
+
+def _jobs_worth_starting(study: Study) -> int:
+    """What is done before further processes have begun is done in this one; the results are the same."""
+    from control.studies.checking import survey
+    from server.studies.duration import STARTING, wall_time
+
+    quick = wall_time(study.definition, survey(study.definition)) < 2.0 * STARTING
+    return 1 if quick else 0
 
 
 def _report(study: Study) -> None:
+    from server.catalogue.shelf import RECORDINGS
     from server.reports.study.report import write_report
 
-    write_report(study.table(), study.definition, study.report_folder)
+    recordings = study.folder.parents[1] / RECORDINGS
+    write_report(study.table(), study.definition, study.report_folder, recordings)
 
 
 def _plot(study: Study) -> None:

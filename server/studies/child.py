@@ -40,10 +40,11 @@ class Child:
         self._words = asyncio.create_task(_last_words(process), name="words of a study's process")
 
     @classmethod
-    async def started(cls, verb: Verb, data: Path, id: str) -> Child:
+    async def started(cls, verb: Verb, data: Path, id: str, jobs: int = 0) -> Child:
+        """jobs: processes that share the work; 0: one a core."""
         files = [str(file) for file in loaded_files()]
         process = await asyncio.create_subprocess_exec(
-            *(*PROGRAM, verb, str(data), id, *files),
+            *(*PROGRAM, verb, str(jobs), str(data), id, *files),
             stdin=PIPE,
             stdout=PIPE,
             stderr=PIPE,

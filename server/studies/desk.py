@@ -88,10 +88,11 @@ class StudyDesk:
             f"the study {other.study.definition.name!r} {where}; wait until it has finished, or stop it first"
         )
 
-    async def begin(self, study: Study, *, consent: bool = False) -> None:
+    async def begin(self, study: Study, *, consent: bool = False, jobs: int = 0) -> None:
         """Go on with what is left of a study. Raises `StudyBusy`.
 
-        consent: a person agrees that a campaign puts current through real coils.
+        consent: a person agrees that a campaign puts current through real coils.  jobs: processes of a batch; 0: one
+        a core.
         """
         on = study.definition.on
         self.require_free(on)
@@ -100,7 +101,7 @@ class StudyDesk:
         total = runs_at_most(study.definition)
         work = Work(study, tally.done, total, tally.failed, begun_with=tally.done, began=time.monotonic())
         self._works[study.id] = work
-        carry = self._walk(work, consent) if on == "rig" else self._compute(work)
+        carry = self._walk(work, consent) if on == "rig" else self._compute(work, jobs)
         work.task = asyncio.create_task(self._carried(work, carry), name=f"study {study.id}")
         self._tell("started", work)
 
@@ -142,8 +143,8 @@ class StudyDesk:
 
     # A batch -------------------------------------------------------------------------------------
 
-    async def _compute(self, work: Work) -> None:
-        work.child = await Child.started("carry-out", self._data, work.study.id)
+    async def _compute(self, work: Work, jobs: int) -> None:
+        work.child = await Child.started("carry-out", self._data, work.study.id, jobs)
         if work.is_unwanted:
             work.child.interrupt()
         await work.child.lines(lambda line: self._heard(work, line))

@@ -1,5 +1,6 @@
 """The least squares behind `pivotrig calibrate coils`: what readings tell, and which are refused."""
 
+import functools
 import math
 import random
 from dataclasses import replace
@@ -21,9 +22,14 @@ CURRENTS = (2.0, -2.0, 1.0, -1.0)
 gains_ = st.tuples(*[st.floats(0.55, 1.9)] * 3)
 
 
+@functools.cache
+def strength(point):
+    """Field per ampere of each pair there, T/A: (component, pair)."""
+    return field_per_ampere(PAPER_PAIRS, np.array([point]))[0]
+
+
 def reading(coil, current, component, gain=1.0, noise=0.0, point=(0.003, -0.002, 0.001)):
-    k = field_per_ampere(PAPER_PAIRS, np.array([point]))[0]
-    true = gain * k[AXES.index(component), AXES.index(coil)] * current + ROOM[AXES.index(component)]
+    true = gain * strength(point)[AXES.index(component), AXES.index(coil)] * current + ROOM[AXES.index(component)]
     return Reading(coil, current, point, component, true + noise)
 
 

@@ -16,7 +16,7 @@ from server.settings import RigFile
 WALK = Selection(
     Choice("geometric"), Choice("eight"), Gait(sweep=math.radians(10.0), tilt=math.radians(25.0))
 )
-PART = 20.0
+PART = 12.0
 """Seconds of the eight in the everyday run of the tests; the full run walks all of it."""
 
 
@@ -36,5 +36,5 @@ def test_the_compiled_firmware_walks_the_eight_as_well_as_its_twin(full: bool) -
 
 
 def test_a_stepped_walk_on_the_emulated_board_is_the_same_each_time() -> None:
-    first, again = (walked("emulated", 5, 4.0) for _ in range(2))
+    first, again = (walked("emulated", 5, 2.0) for _ in range(2))
     assert first == again

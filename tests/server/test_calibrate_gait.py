@@ -39,12 +39,16 @@ def true_figures(table: SlipParameters, tilt: float) -> dict[str, float]:
     }
 
 
-def calibrated(plant: str, tilt_deg: float, seed: int) -> GaitModel:
+SHORT = Star(legs=3, leg=0.012)
+"""A star for everyday: its standard errors are larger, and as honest."""
+
+
+def calibrated(plant: str, tilt_deg: float, seed: int, star: Star) -> GaitModel:
     centre = {"start_x_mm": 0.0, "start_y_mm": 0.0}
     settings = RigFile().with_simulation(plant=plant, seed=seed, **centre)
     machine = build_machine(settings, realtime=False)
     gait = Gait(sweep=math.radians(30.0), tilt=math.radians(tilt_deg), max_rate=6.0)
-    return calibrate_gait(machine, "star", gait, Star()).model
+    return calibrate_gait(machine, "star", gait, star).model
 
 
 @pytest.mark.parametrize(("plant", "tilt_deg"), [("slip", 24.5), ("slip", 20.0), ("noslip", 25.0)])
@@ -53,14 +57,14 @@ def test_the_figures_agree_with_the_plant_within_three_standard_errors(
 ) -> None:
     true = true_figures(TABLES[plant], math.radians(tilt_deg))
     for seed in range(1, 11 if full else 2):
-        model = asdict(calibrated(plant, tilt_deg, seed))
+        model = asdict(calibrated(plant, tilt_deg, seed, Star() if full else SHORT))
         for name, value in true.items():
             error = model["uncertainty"][name]
             assert abs(model[name] - value) <= 3.0 * error, f"{name}, seed {seed}: {model[name]} ± {error}"
 
 
 def test_the_uncertainties_are_small_enough_to_tell_a_slipping_robot_from_another() -> None:
-    model = calibrated("slip", 24.5, 3)
+    model = calibrated("slip", 24.5, 3, Star())
     assert model.uncertainty is not None
     assert model.out < -3.0 * model.uncertainty.out
     assert model.forward_per_sweep > 3.0 * model.uncertainty.forward_per_sweep

@@ -94,7 +94,7 @@ def errors(settings: RigFile) -> np.ndarray:
 
     gait = Gait(sweep=math.radians(10.0), tilt=math.radians(25.0))
     eight = Selection(Choice("geometric"), Choice("eight"), gait)
-    run_headless(machine, "eight", RunRequest(eight, duration=8.0), watch)
+    run_headless(machine, "eight", RunRequest(eight, duration=5.0), watch)
     return np.array(rows)
 
 

@@ -14,7 +14,7 @@ MOST_REFUSED = 0.05
 """Share of the pictures that show the whole robot and get no answer."""
 SAME = 0.004
 """A sighting further than that from the robot's centre is of another one, m: they are 10 mm away at least."""
-SEQUENCES = 1000, 50
+SEQUENCES = 1000, 30
 
 
 def sequence(scene: Scene, seed: int) -> list[Seen]:

@@ -89,12 +89,12 @@ function byField(problems) {
   return fields;
 }
 
-/** Makes the study and begins it. */
-export async function start() {
+/** Makes the study and begins it. consent: to current through the coils of a real rig. */
+export async function start(consent = false) {
   if (!now() || now().starting) return;
   change({ starting: true, error: "" });
   try {
-    const study = await post("/studies", { definition: definitionOf(now()) });
+    const study = await post("/studies", { definition: definitionOf(now()), consent });
     closeForm();
     await Promise.all([openStudy(study.id), loadStudies()]);
   } catch (problem) {

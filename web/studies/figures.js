@@ -9,7 +9,7 @@ import { isGrid, layoutOf, panelsOf } from "./projection.js";
 import { scaleOf } from "./scale.js";
 import { Scatter } from "./scatter.js";
 import { Sets } from "./sets.js";
-import { axisTitle, METRICS, metricOf, valueText, valueWithUnit } from "./words.js";
+import { axisTitle, METRICS, metricOf, metricTitle, valueText, valueWithUnit } from "./words.js";
 
 const KINDS = [["map", "Map"], ["lines", "Lines"], ["table", "Table"]];
 
@@ -31,20 +31,23 @@ export function Figures({ study }) {
 function Panels({ kind, study, layout, metric }) {
   const panels = panelsOf(study.sets, layout);
   const shown = panels.flatMap(({ sets }) => sets);
-  const scale = scaleOf(shown.map(({ mean }) => mean));
-  const grid = isGrid(study.sets, layout);
+  const surface = surfaceOf(study, layout);
+  const scale = scaleOf([...shown.map(({ mean }) => mean), ...(surface?.mean.flat() ?? [])]);
+  const grid = study.design !== "tune" && study.design !== "latin" && isGrid(study.sets, layout);
   const Picture = kind === "lines" && grid ? Lines : grid ? HeatMap : Scatter;
   const bounds = scaleOf(shown.flatMap(({ mean, low, high }) => [mean, low, high]));
   const range = bounds ? padded(bounds.low, bounds.high) : [0, 1];
   return html`
+    ${Picture === Lines && html`<p class="hint">${metricTitle(metric)}</p>`}
     ${Picture === Lines ? html`<${LineLegend} down=${layout.down} />` : html`<${Legend} scale=${scale} metric=${metric} />`}
     <div class="panels" data-picture=${Picture === HeatMap ? "map" : "drawn"} data-count=${panels.length}>
       ${panels.map(({ value, sets }) => html`
         <${Picture} key=${valueText(value)} sets=${sets} layout=${layout} scale=${scale} range=${range} metric=${metric} best=${study.best?.set ?? null}
-          surface=${surfaceOf(study, layout)} caption=${layout.panel ? `${layout.panel.title} ${valueWithUnit(value, layout.panel)}` : ""} />
+          surface=${surface} caption=${layout.panel ? `${layout.panel.title} ${valueWithUnit(value, layout.panel)}` : ""} />
       `)}
     </div>
-    ${study.best && Picture === HeatMap && html`<p class="hint">The framed cell has the smallest ME so far.</p>`}
+    ${study.best && Picture === HeatMap && html`<p class="hint">The framed cell has the smallest mean so far.</p>`}
+    ${surface && html`<p class="hint">Behind the dots: what the search expects, all other axes at their best.</p>`}
     ${kind === "lines" && grid && html`<p class="hint">Bars: 95 % interval of the mean.</p>`}
     ${kind === "lines" && !grid && html`<p class="hint">These sets do not lie on a grid, so there are no lines to draw: a dot each.</p>`}
   `;
@@ -52,7 +55,8 @@ function Panels({ kind, study, layout, metric }) {
 
 /** Only where it is of these two axes, in this order. */
 function surfaceOf({ surface }, { across, down }) {
-  return surface && surface.axes.length === 2 && surface.axes[0] === across.name && surface.axes[1] === down?.name ? surface : null;
+  const ours = surface?.axes.length === 2 && surface.axes[0] === across.name && surface.axes[1] === down?.name;
+  return ours && surface.marks.flat().every(Number.isFinite) ? surface : null;
 }
 
 function Choices({ kind, view, turn, layout, metric }) {

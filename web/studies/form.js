@@ -1,10 +1,11 @@
 /** A new study: what varies, how often, on what; beside it how many runs that are and how long they take. */
 import { useStore } from "../store.js";
-import { html, useEffect, useRef } from "../view.js";
+import { html, useEffect, useRef, useState } from "../view.js";
 import { counted } from "../runs/words.js";
 import { axisGroups } from "./axis_choices.js";
 import { AxisRows } from "./axis_rows.js";
 import { closeForm, saveFile, setField, setFields, start, takeFile, takeSelection, useDraft } from "./composing.js";
+import { CampaignConsent, needsConsent } from "./consent.js";
 import { DESIGNS } from "./draft.js";
 import { Choice, Entry, Select } from "./entry.js";
 import { Limits } from "./limits.js";
@@ -16,7 +17,14 @@ const ORDER = [["blocked", "In blocks: each repeat is one shuffled pass"], ["ran
 export function Form() {
   const title = useRef(null);
   const version = useDraft((draft) => draft.version);
+  const on = useDraft(({ rest }) => rest.on);
+  const [agreeing, agree] = useState(false);
   useEffect(() => void title.current?.focus({ preventScroll: true }), []);
+  const submit = (event) => {
+    event.preventDefault();
+    if (needsConsent(on)) agree(true);
+    else start();
+  };
   return html`
     <article class="study" aria-labelledby="new-study-title">
       <header class="study-head">
@@ -28,13 +36,9 @@ export function Form() {
         <div class="study-fields"><${Fields} /></div>
         <${Preview} />
       </form>
+      ${agreeing && html`<${CampaignConsent} go=${() => start(true)} close=${() => agree(false)} />`}
     </article>
   `;
-}
-
-function submit(event) {
-  event.preventDefault();
-  start();
 }
 
 function Files() {

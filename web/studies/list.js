@@ -1,8 +1,9 @@
 /** The list: a row a study with its progress; one opens in the list's place. */
 import { exactly, when } from "../runs/words.js";
+import { fixed } from "../units.js";
 import { html } from "../view.js";
 import { openStudy, rowId } from "./listing.js";
-import { onWords, progressWords } from "./words.js";
+import { metricOf, onWords, progressWords } from "./words.js";
 
 export const List = ({ studies }) => html`
   <ul class="study-list" aria-label="Studies, newest first" onKeyDown=${walk}>
@@ -17,11 +18,17 @@ function Row({ study }) {
       <${State} study=${study} />
       <${Bar} study=${study} />
       <span class="study-progress">${progressWords(study)}</span>
-      <span class="study-best">${study.best ? html`best ME ${study.best.words}` : ""}</span>
+      <span class="study-best">${study.best ? bestWords(study.best) : ""}</span>
       <span class="soft study-when"><time datetime=${study.created_at} title=${exactly(study.created_at)}>${when(study.created_at)}</time>, ${onWords(study.on)}</span>
       ${study.current && html`<span class="study-current">${study.current}</span>`}
     </li>
   `;
+}
+
+/** "best ME 0.142 at tilt 25 °, sweep 30 °" */
+function bestWords({ metric, mean, words }) {
+  const [, title, , digits] = metricOf(metric);
+  return `best ${title} ${fixed(mean, digits)}${words ? ` at ${words}` : ""}`;
 }
 
 export const State = ({ study }) => html`<span class="study-state" data-state=${study.state}>${study.state}</span>`;

@@ -122,7 +122,9 @@ async function doing(words, call) {
 }
 
 export const stopStudy = (id) => doing("Stopping", async () => change({ study: merged(await post(`${path(id)}/stop`)) }));
-export const resumeStudy = (id) => doing("Resuming", async () => change({ study: merged(await post(`${path(id)}/resume`)) }));
+/** consent: to current through the coils of a real rig. */
+export const resumeStudy = (id, consent = false) =>
+  doing("Resuming", async () => change({ study: merged(await post(`${path(id)}/resume`, { consent })) }));
 
 const merged = (answer) => (now().study?.id === answer.id ? { ...now().study, ...answer } : now().study);
 

@@ -26,9 +26,10 @@ export function layoutOf(study, view) {
   const byName = (name) => axes.find((axis) => axis.name === name);
   const varied = [...axes].sort((a, b) => Number(b.values.length > 1) - Number(a.values.length > 1));
   const numbersFirst = [...varied].sort((a, b) => Number(isNumeric(b) && b.values.length > 1) - Number(isNumeric(a) && a.values.length > 1));
-  const across = byName(view.across) ?? numbersFirst[0] ?? null;
+  const [first, second] = study.surface?.axes ?? [];
+  const across = byName(view.across) ?? byName(first) ?? numbersFirst[0] ?? null;
   const rest = varied.filter((axis) => axis !== across);
-  const down = view.down !== view.across && rest.includes(byName(view.down)) ? byName(view.down) : (rest[0] ?? null);
+  const down = view.down !== view.across && rest.includes(byName(view.down)) ? byName(view.down) : (rest.find(({ name }) => name === second) ?? rest[0] ?? null);
   const further = rest.filter((axis) => axis !== down && axis.values.length > 1);
   const panel = further.find((axis) => axis.values.length <= MOST_PANELS) ?? null;
   const chosen = further.filter((axis) => axis !== panel).map((axis) => ({ axis, value: chosenValue(axis, view.fixed) }));

@@ -62,7 +62,7 @@ function Dot({ set, x, y, scale, metric, axes, best }) {
 
 /** A rectangle for each place of the learned grid. */
 function Surface({ surface, x, y, scale }) {
-  const [columns, rows] = surface.grids;
+  const [columns, rows] = surface.marks;
   return html`
     <g class="surface" aria-hidden="true">
       ${rows.flatMap((row, index) => columns.map((column, place) => {

@@ -1,14 +1,14 @@
 /** One study: how far it is, what it does now, its figures, and what can be done with it. */
-import { useStore } from "../store.js";
 import { html, useEffect, useRef, useState } from "../view.js";
 import { filterBy, NO_FILTER } from "../runs/listing.js";
-import { exactly } from "../runs/words.js";
+import { counted, exactly } from "../runs/words.js";
 import { compose } from "./composing.js";
+import { CampaignConsent, needsConsent } from "./consent.js";
 import { DeleteDialog } from "./delete.js";
 import { Figures } from "./figures.js";
 import { Bar, State } from "./list.js";
 import { closeStudy, resumeStudy, stopStudy, useStudies } from "./listing.js";
-import { onWords, progressWords, setText, withInterval } from "./words.js";
+import { metricOf, onWords, progressWords, setText, withInterval } from "./words.js";
 import { showTab } from "../journal/tab.js";
 
 export function StudyPage({ id }) {
@@ -34,7 +34,7 @@ function Page({ study, trouble, working }) {
         <${Bar} study=${study} />
         <p><span>${progressWords(study)}</span><span class="soft"> · ${onWords(study.on)}, begun ${exactly(study.created_at)}</span></p>
         <p class="study-now" aria-live="polite">${study.current || study.reason}</p>
-        ${study.best && html`<p>Smallest ME so far: <b>${withInterval(study.best, 3)}</b> robot lengths at ${setText(study.best.values, study.axes)} (n = ${study.best.runs}).</p>`}
+        ${study.best && html`<${Best} study=${study} />`}
         ${study.answer && html`<${Answer} study=${study} />`}
       </div>
       <${Buttons} study=${study} working=${working} />
@@ -44,22 +44,33 @@ function Page({ study, trouble, working }) {
   `;
 }
 
+function Best({ study: { best, axes } }) {
+  const [, words, unit, digits] = metricOf(best.metric);
+  const where = axes.length > 0 ? ` at ${setText(best.values, axes)}` : "";
+  return html`<p>Smallest ${words} so far: <b>${withInterval(best, digits)}</b> ${unit}${where} (n = ${best.runs}).</p>`;
+}
+
 /** What a search for the best has found. */
 function Answer({ study: { answer, axes } }) {
-  const predicted = withInterval({ mean: answer.predicted, low: answer.predicted_low, high: answer.predicted_high }, 3);
-  return html`<p>The search's answer: ${setText(answer.values, axes)}, predicted ME ${predicted}${answer.confirmed ? html`, confirmed by ${answer.runs} runs: <b>${withInterval(answer, 3)}</b>` : ", not confirmed yet"}.</p>`;
+  const { values, expected, measured, runs } = answer;
+  const [, words, unit, digits] = metricOf(answer.metric);
+  return html`
+    <p>The search's answer: ${setText(values, axes)}, where ${words} is expected to be ${withInterval(expected, digits)} ${unit};
+      ${measured ? html` measured there in ${counted(runs, "run")}: <b>${withInterval(measured, digits)}</b>` : " not confirmed yet"}.</p>
+  `;
 }
 
 function Buttons({ study, working }) {
   const [asking, ask] = useState(false);
-  const armed = useStore((state) => state.tick?.rig);
+  const [agreeing, agree] = useState(false);
+  const resume = () => (needsConsent(study.on) ? agree(true) : resumeStudy(study.id));
   const running = study.state === "running";
   const over = study.state === "finished";
   const address = `/api/v1/studies/${encodeURIComponent(study.id)}`;
   return html`
     <div class="run-buttons">
       ${running && html`<button class="next" type="button" disabled=${working !== ""} onClick=${() => stopStudy(study.id)}>Stop study</button>`}
-      ${!running && !over && html`<button class="next" type="button" disabled=${working !== ""} onClick=${() => resumeStudy(study.id)}>${study.state === "planned" ? "Start study" : "Resume study"}</button>`}
+      ${!running && !over && html`<button class="next" type="button" disabled=${working !== ""} onClick=${resume}>${study.state === "planned" ? "Start study" : "Resume study"}</button>`}
       <${Away} href=${`${address}/report`} words="Report" there=${study.done > 0} opens />
       <${Away} href=${`${address}/table.csv`} words="Table, CSV" there=${study.done > 0} />
       <${Away} href=${`${address}/plot.png`} words="Figure, PNG" there=${study.done > 0} />
@@ -68,7 +79,8 @@ function Buttons({ study, working }) {
       <button type="button" onClick=${() => compose(study.definition)}>Use as a new study</button>
       <button type="button" disabled=${running} title=${running ? "It goes on; stop it first." : ""} onClick=${() => ask(true)}>Delete…</button>
     </div>
-    ${running && study.on === "rig" && armed && html`<p class="hint">It goes on by itself, also when this page is closed. STOP ends it; it can be resumed.</p>`}
+    ${running && study.on === "rig" && html`<p class="hint">It goes on by itself, also when this page is closed. STOP ends it; it can be resumed.</p>`}
+    ${agreeing && html`<${CampaignConsent} go=${() => resumeStudy(study.id, true)} close=${() => agree(false)} />`}
     ${asking && html`<${DeleteDialog} study=${study} close=${() => ask(false)} />`}
   `;
 }

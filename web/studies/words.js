@@ -10,7 +10,7 @@ export const METRICS = [
   ["steps", "Steps", "", 0],
 ];
 
-export const metricOf = (name) => METRICS.find(([each]) => each === name) ?? METRICS[0];
+export const metricOf = (name) => METRICS.find(([each]) => each === name) ?? [name, name.replaceAll("_", " "), "", 3];
 
 /** "ME in robot lengths". */
 export function metricTitle([, words, unit]) {

@@ -71,10 +71,12 @@ def tilt_study(
                 yield TiltPoint(ratio, ramp, tilt, survey(choice, LENGTH, stride, switches, seeds))
 
 
-def beside_the_table(switches: int = SWITCHES, seeds: Sequence[int] = TABLE_SEEDS) -> Iterator[TableRow]:
+def beside_the_table(
+    rows: Sequence[Slip] = SLIP_TABLE.rows, switches: int = SWITCHES, seeds: Sequence[int] = TABLE_SEEDS
+) -> Iterator[TableRow]:
     """Each row of the slip table, and the rigid robot at the table's Lambda; nothing is fitted."""
     choice = rigid_with(TABLE_ROBOT, SLIP_TABLE.magnetic_ratio)
-    for row in SLIP_TABLE.rows:
+    for row in rows:
         yield TableRow(row, survey(choice, LENGTH, Stride(tilt=row.tilt), switches, seeds))
 
 

@@ -60,6 +60,10 @@ class Comparison:
         """Mean of one over mean of other."""
         return self.means[0] / self.means[1] if self.means[1] else NAN
 
+    @property
+    def inverse_ratio(self) -> float:
+        return self.means[1] / self.means[0] if self.means[0] else NAN
+
 
 def compare(samples: Samples, axis: str) -> tuple[Comparison, ...]:
     """Every pair of the axis' values at every point of the other axes where both have finished runs."""

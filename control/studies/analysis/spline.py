@@ -52,7 +52,7 @@ def smoother(x: Array, means: Array, errors: Array) -> Smoother:
 
 
 def _hat(weights: Array, penalty: Array) -> Array:
-    return np.linalg.solve(np.diag(weights) + penalty, np.diag(weights))
+    return np.asarray(np.linalg.solve(np.diag(weights) + penalty, np.diag(weights)), dtype=np.float64)
 
 
 def _mallows(hat: Array, means: Array, weights: Array) -> float:

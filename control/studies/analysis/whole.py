@@ -10,7 +10,7 @@ from control.studies.analysis.comparison import Comparison, compare
 from control.studies.analysis.distribution import Distribution, describe
 from control.studies.analysis.drift import Drift, drift
 from control.studies.analysis.effects import Effects, effects
-from control.studies.analysis.optimum import Optimum, optimum
+from control.studies.analysis.optimum import FEWEST_LEVELS, Optimum, optimum
 from control.studies.analysis.samples import ME, Row, Samples, samples
 from control.studies.analysis.screening import Influence, screening
 from control.studies.analysis.sets import SetSummary, best, summarise
@@ -72,7 +72,10 @@ def analyse(
 
 
 def _searched(found: Samples) -> list[str]:
-    return [axis for axis in found.varied() if found.numeric(axis)]
+    """Numeric axes with enough levels for an optimum between them."""
+    return [
+        axis for axis in found.varied() if found.numeric(axis) and len(found.levels(axis)) >= FEWEST_LEVELS
+    ]
 
 
 def _overall(found: Samples) -> tuple[Optimum, ...]:

@@ -64,11 +64,12 @@ def walk_prepared(prepared: Prepared) -> Metrics:
     run, task, course = prepared.run, prepared.task, prepared.course
     start, setup = start_of(run), run.setup
     speed = 2.0 * task.tilt / setup.ramp
+    # Compiled code is made for certain types: a whole number would ask for another kernel.
+    begun = Start(float(start.x), float(start.y), float(start.heading))
     draw, draws, more = random.Random(run.seed).gauss, list[float](), _first_draws(course, task)
     while True:
         draws += [draw(0.0, 1.0) for _ in range(max(more, len(draws)))]
         robot = _robot(prepared.table, draws, setup.length)
-        begun = Start(start.x, start.y, start.heading)
         outcome = walk_compiled(task, begun, Course(course.points, course.ahead), robot, speed)
         if outcome.end != UNDRAWN:
             break
@@ -104,14 +105,18 @@ def _task(run: PlannedRun, controller: Controller) -> Task | None:
         law, gain, look_ahead = GRADIENT, 0.0, controller.look_ahead(gait)
     else:
         return None
-    edge = setup.workspace + OVERSHOOT
-    return Task(law, gain, look_ahead, gait.sweep, gait.tilt, gait.max_rate, setup.length, edge)
+    values = gain, look_ahead, gait.sweep, gait.tilt, gait.max_rate, setup.length, setup.workspace + OVERSHOOT
+    return Task(law, *(float(value) for value in values))
 
 
 def _robot(table: SlipParameters, draws: list[float], length: float) -> Robot:
     rows = _rows(table)
     return Robot(
-        rows, np.ascontiguousarray(rows[:, 0]), np.array(draws), length / table.reference_length, length
+        rows,
+        np.ascontiguousarray(rows[:, 0]),
+        np.array(draws),
+        float(length / table.reference_length),
+        float(length),
     )
 
 

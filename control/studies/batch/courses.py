@@ -68,6 +68,11 @@ class Courses:
         self._most_ticks = most_ticks
         self._kept: OrderedDict[tuple[object, ...], LaidOut] = OrderedDict()
 
+    @property
+    def ticks(self) -> int:
+        """Of all courses that are kept."""
+        return sum(len(kept.points) for kept in self._kept.values())
+
     def get(self, wanted: Wanted) -> LaidOut | None:
         """None for a course that is too long, or leads to what is no place."""
         key = wanted.key
@@ -75,7 +80,7 @@ class Courses:
         if course is not None:
             self._kept[key] = course
             self._kept.move_to_end(key)
-        while sum(len(kept.points) for kept in self._kept.values()) > self._most_ticks:
+        while self.ticks > self._most_ticks:
             self._kept.popitem(last=False)
         return course
 

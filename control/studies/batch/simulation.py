@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 from control.metrics import Metrics
-from control.studies.batch.compiled import prepared, walk_prepared
+from control.studies.batch.compiled import Prepared, prepared, walk_prepared
 from control.studies.batch.outcome import Failed, RunFailed
 from control.studies.batch.plain import plain_walk
 
@@ -21,9 +22,28 @@ def simulate(runs: Sequence[PlannedRun]) -> list[Metrics | Failed]:
 
 def _figures(run: PlannedRun) -> Metrics | Failed:
     try:
-        compiled = prepared(run)
-        return plain_walk(run) if compiled is None else walk_prepared(compiled)
+        compiled = _prepared(run)
+        return walk_prepared(compiled) if compiled is not None else _walked(run)
     except RunFailed as failed:
         return Failed(str(failed))
-    except Exception as error:  # noqa: BLE001 (controllers and paths may be anyone's code)
-        return Failed(f"the run could not be walked: {type(error).__name__}: {error}")
+
+
+def _prepared(run: PlannedRun) -> Prepared | None:
+    with _anyones_code():
+        return prepared(run)
+
+
+def _walked(run: PlannedRun) -> Metrics:
+    with _anyones_code():
+        return plain_walk(run)
+
+
+@contextmanager
+def _anyones_code() -> Iterator[None]:
+    """Controllers, paths and plants may be anyone's, and raise whatever they like: it is their run that fails."""
+    try:
+        yield
+    except RunFailed:
+        raise
+    except Exception as error:
+        raise RunFailed(f"the run could not be walked: {type(error).__name__}: {error}") from error

@@ -19,6 +19,10 @@ from server.reports.study.naming import axis_name, axis_title, short_metric, val
 WIDTH, HEIGHT = 3.3, 2.6
 """Of one panel, inches."""
 MARKS = "osD^vP<>"
+BESIDE = 0.07
+"""Room on either side, as a share of the axis."""
+MOST_TICKS = 8
+"""Levels that are written below the axis; more would touch."""
 ASIDE = 0.012
 """Lines are set apart by this share of the axis, so that their intervals do not hide each other."""
 
@@ -60,7 +64,12 @@ def _panel(axes: Axes, samples: Samples, layout: Layout, panel: Panel) -> None:
     label(axes, axis_title(layout.x), short_metric(samples.metric), title)
     axes.grid(axis="y", color="#e6e6e6", linewidth=0.6)
     levels = samples.levels(layout.x)
-    if not samples.numeric(layout.x):
+    if samples.numeric(layout.x):
+        room = BESIDE * (float(levels[-1]) - float(levels[0]) or 1.0)
+        axes.set_xlim(levels[0] - room, levels[-1] + room)
+        if len(levels) <= MOST_TICKS:
+            axes.set_xticks(levels)
+    else:
         axes.set_xticks(range(len(levels)), [str(level) for level in levels], fontsize=8)
         axes.margins(x=0.2)
 

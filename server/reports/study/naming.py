@@ -114,4 +114,4 @@ def _digits(interval: Interval) -> int:
 def chance_text(p: float) -> str:
     if not math.isfinite(p):
         return "–"
-    return "< 0.0001" if p < 1e-4 else f"{p:.2g}"
+    return "<\u00a00.0001" if p < 1e-4 else f"{p:.2g}"

@@ -15,7 +15,7 @@ NAMES = {"geometric": "Gb", "gradient": "Ob"}
 PATH_STEP_S = 0.1
 UNIT_NOTE = (
     "The paper prints variances without a unit, of a “normalized error” that it does not define there; they are "
-    "thousands of times those of ME, so only their order and ratios can be compared."
+    "far larger than any variance of ME could be, so only their order and their ratios can be compared with ours."
 )
 
 

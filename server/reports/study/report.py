@@ -8,6 +8,7 @@ from pathlib import Path
 from control.studies.analysis.whole import analyse
 from control.studies.definition import StudyDefinition
 from control.studies.table import StudyTable
+from server.atomic_save import replace_file
 from server.reports import drawing
 from server.reports.page import Picture
 from server.reports.study import figures, tables
@@ -35,11 +36,12 @@ def write_report(
     }
     tabled = {name: one for name, one in tables.all_of(found, definition).items() if len(one) > 1}
     pictures = {name: [_written(one, folder) for one in group] for name, group in drawn.items()}
-    for name, content in tabled.items():
-        (folder / f"{name}.csv").write_bytes(csv_text(content).encode())
+    for name, rows in tabled.items():
+        (folder / f"{name}.csv").write_bytes(csv_text(rows).encode())
     (folder / "runs.csv").write_bytes(table.csv())
-    (folder / "study.toml").write_text(definition.to_toml())
-    (folder / REPORT).write_text(sheet(Content(definition, table, found, pictures, tabled)))
+    (folder / "study.toml").write_bytes(definition.to_toml().encode())
+    content = Content(definition, table, found, pictures, tabled)
+    replace_file(folder / REPORT, sheet(content))  # last, and whole: who finds it finds everything
     return folder / REPORT
 
 

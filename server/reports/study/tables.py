@@ -10,7 +10,7 @@ from control.studies.analysis.intervals import Interval
 from control.studies.analysis.optimum import Kind, Optimum
 from control.studies.analysis.whole import Analysis
 from control.studies.definition import StudyDefinition
-from server.reports.study.naming import axis_name, chance_text, number, point_text, short_metric
+from server.reports.study.naming import axis_name, chance_text, number, point_text, short_metric, value_text
 from server.reports.study.printed import printed_row
 from server.reports.tables import Cell, Table
 
@@ -56,7 +56,7 @@ def optima(found: tuple[Optimum, ...]) -> Table:
         "value",
         "value low",
         "value high",
-        "so it is",
+        "the optimum is",
         "best level",
     )
     return [header, *(_optimum(one) for one in found)]
@@ -66,7 +66,7 @@ def _optimum(one: Optimum) -> tuple[Cell, ...]:
     where = ("", "", "") if one.kind is Kind.UNKNOWN else _interval(one.where)
     return (
         axis_name(one.axis), point_text(one.fixed) or "mean over the others", *where, *_interval(one.value),
-        one.kind.value, _rounded(one.measured),
+        one.kind.value, value_text(one.axis, one.measured),
     )  # fmt: skip
 
 

@@ -76,16 +76,17 @@ def _optimum(found: Analysis, one: Optimum) -> str:
     span = f"{value_text(one.axis, levels[0])} to {value_text(one.axis, levels[-1])}"
     begin = f"Over {name} {span}{at}{mean}: "
     if one.kind is Kind.UNKNOWN:
-        why = f"{FEWEST_LEVELS} levels" if len(one.line_x) < FEWEST_LEVELS else "repeats of every set"
-        return f"{begin}the best level is {value_text(one.axis, one.measured)}; an optimum between levels needs {why}."
+        best = value_text(one.axis, one.measured)
+        return f"{begin}the best level is {best}; how surely needs repeats of every set, at {FEWEST_LEVELS} levels."
     where, value = with_interval(one.where, unit), with_interval(one.value)
     if one.kind is Kind.FLAT:
         return f"{begin}{metric} is flat; where it is smallest cannot be told ({where})."
     if one.kind is Kind.INSIDE:
         return f"{begin}{metric} is smallest at {where}, where it is {value}."
+    ends = f"{number(float(one.line[0]))} to {number(float(one.line[-1]))}"
     return (
         f"{begin}{metric} is smallest {one.kind.value} of what was tried, {where}, where it is {value}; "
-        "a better value may lie beyond."
+        f"from end to end it goes from {ends}, and a better value may lie beyond."
     )
 
 
@@ -132,14 +133,19 @@ def _effects(found: Analysis) -> Iterator[str]:
 
 
 def _comparisons(found: Sequence[Comparison]) -> Iterator[str]:
-    for axis, one, other in dict.fromkeys((each.axis, each.one, each.other) for each in found):
+    for axis, *names in dict.fromkeys((each.axis, each.one, each.other) for each in found):
+        one, other = names
         pairs = [each for each in found if (each.axis, each.one, each.other) == (axis, one, other)]
         orders = Counter(each.order for each in pairs)
         ratios = sorted(each.ratio for each in pairs)
+        below, above = orders[Order.LOWER], orders[Order.HIGHER]
+        if above > below:
+            one, other, below, above = other, one, above, below
+            ratios = sorted(each.inverse_ratio for each in pairs)
         yield (
-            f"{one} lies below {other} at {orders[Order.LOWER]} of {len(pairs)} points, above at "
-            f"{orders[Order.HIGHER]}, and {orders[Order.OPEN]} cannot be told; its mean is {number(ratios[0], 3)} to "
-            f"{number(ratios[-1], 3)} times the other's."
+            f"{one} lies below {other} at {below} of {len(pairs)} points, above at {above}, and at "
+            f"{orders[Order.OPEN]} it cannot be told; its mean is {number(ratios[0])} to {number(ratios[-1])} times "
+            "the other's."
         )
 
 
@@ -172,4 +178,4 @@ def _drift(found: Analysis, drift: Drift) -> str:
 
 
 def _percent(share: float) -> str:
-    return f"{100.0 * share:.0f} %"
+    return f"{100.0 * share:.2g} %"

@@ -169,6 +169,12 @@ class Attendant:
             if self._operator.now >= until:
                 return snapshot
 
+    def until(self, condition: Callable[[], bool], within: float) -> None:
+        """Let the rig go on until the condition holds, though no longer than so long, s."""
+        give_up = self._operator.now + within
+        while not condition() and self._operator.now < give_up:
+            self.tick()
+
     def leave(self) -> None:
         """Nobody walks any more, and the coils are off."""
         reason = "the study is over" if self._order is None else str(self._order)

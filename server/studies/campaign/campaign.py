@@ -32,6 +32,10 @@ from server.studies.condition import StudyState
 from server.studies.errors import StudyStoreError
 from server.studies.study import Carrying, Study
 
+RECORDED_WITHIN = 10.0
+"""A run's row waits for its recording and the catalogue, s, so that whoever has the row finds the run; a disk that
+takes longer is no reason to wait, since nothing that was walked is lost then."""
+
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
@@ -117,6 +121,7 @@ class Campaign:
         done = self._operator.outcome(id)
         if done.state is not RunState.FINISHED or done.metrics is None:
             raise Interrupted(done.reason)
+        self._attendant.until(lambda: self._operator.is_recorded(id), RECORDED_WITHIN)
         return done.metrics
 
     def _request(self, run: PlannedRun) -> RunRequest:

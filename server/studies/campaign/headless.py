@@ -83,6 +83,9 @@ class HeadlessOperator:
             raise KeyError(f"the newest run is not {id!r}")
         return run
 
+    def is_recorded(self, id: str) -> bool:
+        return self._recording.is_complete(id)
+
     def _heed_news(self) -> None:
         for line in self._loop.take_announcements():
             self._recording.tell(line)

@@ -77,6 +77,9 @@ class RigOperator:
     def outcome(self, id: str) -> Run:
         return self._rig.runs.of(id)
 
+    def is_recorded(self, id: str) -> bool:
+        return self._rig.is_recorded(id)
+
     def _answer(self, question: Coroutine[Any, Any, T]) -> T:
         """Ask on the event loop, and wait for what comes of it; ticks before it are no news any more."""
         if self._events.is_closed():

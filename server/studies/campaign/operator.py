@@ -52,3 +52,7 @@ class Operator(Protocol):
     def outcome(self, id: str) -> Run:
         """A run that was started here, as it is now."""
         ...
+
+    def is_recorded(self, id: str) -> bool:
+        """Whether a run that is over is all in its recording and in the catalogue."""
+        ...

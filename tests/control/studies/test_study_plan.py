@@ -142,7 +142,7 @@ def test_a_latin_hypercube_has_one_point_in_each_part_of_each_axis(seed, sets):
     ]
     plan = FixedPlan(definition(design="latin", latin={"sets": sets}, axes=axes, seed=seed))
     for name, low, high in (("gait.tilt_deg", 10.0, 35.0), ("controller.gain", 1.0, 9.0)):
-        shares = [(one[name] - low) / (high - low) for one in plan.sets]
+        shares = [(float(one[name] or 0.0) - low) / (high - low) for one in plan.sets]
         assert sorted(int(share * sets - 1e-9) for share in shares) == list(range(sets))
 
 

@@ -1,0 +1,1 @@
+"""Section 6 of the paper: its studies as batches, and each of its statements beside what they say."""
