@@ -84,7 +84,7 @@ class Rig(RigLife):
     async def begin_run(self, request: RunRequest) -> Run:
         """`start_run` for who has the rig to itself."""
         id = new_id()
-        await asyncio.to_thread(self._recording.check, self._machine)
+        await asyncio.to_thread(self.check_recording)
         await self._ask(lambda: self._start(id, request))
         return self.runs.of(id)
 
@@ -95,6 +95,10 @@ class Rig(RigLife):
         self._recording.begin(self._machine, run)
         self._trail.clear()
         self.runs.start(run)
+
+    def check_recording(self) -> None:
+        """Raises `Refused` where a run could not be recorded; from any thread, and it blocks."""
+        self._recording.check(self._machine)
 
     def is_recorded(self, id: str) -> bool:
         """Whether a run that is over is all in its recording and in the catalogue; from any thread."""

@@ -23,6 +23,7 @@ SECTIONS = {
     "recording": recording_cost.report,
     "tracking": tracking_cost.report,
     "decision": decision_cost.report,
+    "studies": study_pace.report,
 }
 
 

@@ -43,14 +43,14 @@ def field(place: Page | Locator, name: str) -> Locator:
     return place.get_by_role("textbox", name=name, exact=True)
 
 
-def short_study(page: Page, name: str, *, seconds: float) -> Locator:
+def short_study(page: Page, name: str, *, seconds: float, repeats: int = 2) -> Locator:
     """The form of a study of short runs, two sweeps; the part that says how many runs that are."""
     button(page, "New study").click()
     form = page.get_by_role("article", name="New study")
     field(form, "Name").fill(name)
     form.get_by_label("Axis", exact=True).select_option("gait.sweep_deg")
     field(form, "Values in °").fill("20, 30")
-    field(form, "Runs of each set").fill("2")
+    field(form, "Runs of each set").fill(str(repeats))
     form.get_by_text("Order, length and limits").click()
     field(form, "A run ends after").fill(str(seconds))
     return form
@@ -133,12 +133,12 @@ def test_a_campaign_walks_the_rig_is_stopped_by_stop_and_resumed_by_a_person(
 ) -> None:
     page = visit.page
     eventually(lambda: served.ask("/state")["tracking"] == "locked", "the camera sees the robot")
-    form = short_study(page, "on the rig", seconds=1)
+    form = short_study(page, "on the rig", seconds=1, repeats=20)
     form.get_by_label("On", exact=True).select_option("This rig, run by run")
     expect(form.get_by_label("Plant")).to_have_count(0)
     button(form, "Start study").click()
     study = page.get_by_role("article", name="on the rig")
-    expect(study.locator(".study-now")).to_contain_text(re.compile("run 1 of 4", re.IGNORECASE))
+    expect(study.locator(".study-now")).to_contain_text(re.compile("run 1 of 40", re.IGNORECASE))
     sign = page.get_by_role("group", name="Study under way")
     expect(sign).to_contain_text("on the rig")
 

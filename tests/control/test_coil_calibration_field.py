@@ -29,7 +29,10 @@ def strength(point):
 
 
 def reading(coil, current, component, gain=1.0, noise=0.0, point=(0.003, -0.002, 0.001)):
-    true = gain * strength(point)[AXES.index(component), AXES.index(coil)] * current + ROOM[AXES.index(component)]
+    true = (
+        gain * strength(point)[AXES.index(component), AXES.index(coil)] * current
+        + ROOM[AXES.index(component)]
+    )
     return Reading(coil, current, point, component, true + noise)
 
 

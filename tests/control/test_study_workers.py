@@ -73,8 +73,6 @@ def test_a_chunk_is_as_many_runs_as_take_some_tenths_of_a_second():
     assert pace.take(iter(())) == ()
 
 
-
-
 def test_a_run_that_raises_is_a_failed_one_and_the_others_go_on(tmp_path):
     wanted = runs(2)
     wanted[2] = dataclasses.replace(

@@ -50,6 +50,10 @@ EVENTS = (
         "Emergency stop: page, `POST /api/v1/estop`, `kill -USR1`", "emergency stop", "fault", "at once", RESET,
         "test_computer_dies",
     ),
+    OutsideEvent(
+        "Study interrupted", "how far it came; finished runs stay as they are", "ended", "as for what interrupted it",
+        "resume the study", "test_study_interrupted",
+    ),
 )  # fmt: skip
 
 

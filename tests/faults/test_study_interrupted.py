@@ -36,7 +36,9 @@ def walking(bench: CampaignBench, runs: int, **changes: Any) -> Iterator[subproc
     command = [sys.executable, "-m", "server", "study", str(file), "--data", str(bench.data), "--json"]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as process:
         try:
-            _wait(process, lambda: max((len(bench.runs(each)) for each in bench.store.all()), default=0) >= runs)
+            _wait(
+                process, lambda: max((len(bench.runs(each)) for each in bench.store.all()), default=0) >= runs
+            )
             yield process
         finally:
             process.kill()

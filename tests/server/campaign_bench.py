@@ -83,7 +83,7 @@ class Sitting:
         assert isinstance(self.machine.world.board, TwinBoard)
         return self.machine.world.board
 
-    def inject(self, name: str, duration: float | None = None, **parameters: Any) -> None:
+    def inject(self, name: str, duration: float = math.inf, **parameters: Any) -> None:
         assert self.machine.faults is not None
         self.machine.faults.inject(name, parameters, duration=duration)
 

@@ -11,14 +11,12 @@ import os
 import sys
 import traceback
 
-from study_bench import definition
-
-from control.studies.batch import simulate
+from control.studies import batch
 from server import cli
 from server.commands import studies, study_sitting
 from server.studies import carrying_out, store
 
-LOADED = (studies, study_sitting, carrying_out, store)
+LOADED = (batch, studies, study_sitting, carrying_out, store)
 """What the commands load when they are needed."""
 
 
@@ -27,7 +25,6 @@ def say(words: object) -> None:
 
 
 def main() -> None:
-    simulate([definition().plan().run(0)])
     for line in sys.stdin:
         child = os.fork()
         if child == 0:

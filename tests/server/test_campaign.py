@@ -76,7 +76,12 @@ def test_what_is_stopped_in_the_middle_of_a_run_goes_on_with_that_run(bench: Cam
     study = bench.study()
 
     def stop(sitting: Sitting, snapshot: Snapshot) -> None:
-        if len(sitting.starts) == 2 and sitting.run and snapshot.run is not None and snapshot.run.elapsed > 0.3:
+        if (
+            len(sitting.starts) == 2
+            and sitting.run
+            and snapshot.run is not None
+            and snapshot.run.elapsed > 0.3
+        ):
             sitting.stop("stopped by the operator")
 
     outcome, sitting = bench.sit(study, stop)

@@ -49,7 +49,9 @@ class Person:
             self.has_come = True
 
 
-def test_after_a_disarm_a_campaign_waits_for_a_person_and_then_goes_on_by_itself(bench: CampaignBench) -> None:
+def test_after_a_disarm_a_campaign_waits_for_a_person_and_then_goes_on_by_itself(
+    bench: CampaignBench,
+) -> None:
     study = bench.study(**ONE_RUN)
     person = Person(comes_after=3.0)
     outcome, sitting = bench.sit(study, person, attended=True)
@@ -146,6 +148,21 @@ def test_a_way_back_that_something_holds_is_walked_anew_and_is_no_attempt(bench:
     outcome, sitting = bench.sit(study, hide)
     assert outcome.state == "finished"
     assert sitting.has_said("the way back was interrupted: the robot is not seen")
+    assert study.rows()[0].attempts == 1
+
+
+def test_a_full_disk_is_waited_for_and_is_no_attempt(bench: CampaignBench) -> None:
+    study = bench.study(**ONE_RUN)
+    is_full: list[bool] = []
+
+    def fill(sitting: Sitting, snapshot: Snapshot) -> None:
+        if snapshot.run is not None and not is_full:
+            is_full.append(True)
+            sitting.inject("disk_full", duration=6.0)
+
+    outcome, sitting = bench.sit(study, fill)
+    assert outcome.state == "finished"
+    assert sitting.has_said("waiting: the run cannot be recorded")
     assert study.rows()[0].attempts == 1
 
 

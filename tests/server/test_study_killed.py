@@ -19,7 +19,7 @@ from server.studies.store import StudyStore
 PATIENCE = 60.0
 MOMENT = 0.05
 """Longest wait for the random moment in a piece of work, s."""
-STUDY = definition(60, duration_s=0.3, gait={"time_law": "wait"})
+STUDY = definition(40, duration_s=0.2, gait={"time_law": "wait"})
 """In plain Python, by its time law: nothing is compiled, so that a worker is ready sooner."""
 RUNS = STUDY.plan().total
 PROCESSES = Path("/proc")
@@ -140,7 +140,7 @@ def test_ctrl_c_leaves_a_study_that_goes_on_with_other_workers(mortal, expected,
     until(lambda: study.tally().done)
     os.killpg(process, signal.SIGINT)
     assert mortal.exit_code() == 1
-    assert not session_of(process)
+    until(lambda: not session_of(process))
     assert (study.state, study.reason) == ("stopped", "stopped by the operator")
     carried_out(study)
     assert study.table().csv() == expected

@@ -64,7 +64,9 @@ def test_a_scheduler_that_goes_away_is_told_in_words(tmp_path, monkeypatch):
     monkeypatch.setattr(dask_crew, "WITHOUT_WORKERS", 0.5)
     monkeypatch.setattr(dask_crew, "LOOK", 0.1)
     study = StudyStore(tmp_path).create(definition(40, gait={"time_law": "wait"}))
-    own = LocalCluster(n_workers=1, threads_per_worker=1, processes=False, protocol="tcp", dashboard_address=":0")
+    own = LocalCluster(
+        n_workers=1, threads_per_worker=1, processes=False, protocol="tcp", dashboard_address=":0"
+    )
     gone = threading.Event()
 
     def close(_progress):

@@ -155,7 +155,10 @@ def room_for(size):
 def test_a_full_disk_ends_a_study_in_words_and_it_goes_on_when_there_is_room(study):
     expected = study.table().csv()
     (study.folder / "results.jsonl").unlink()
-    with room_for(1500), pytest.raises(StudyStoreError, match=r"results.jsonl cannot be written: .* make room"):
+    with (
+        room_for(1500),
+        pytest.raises(StudyStoreError, match=r"results.jsonl cannot be written: .* make room"),
+    ):
         carried_out(study)
     assert study.state == "interrupted"
     assert "make room" in study.reason

@@ -77,6 +77,7 @@ function rested() {
 /** A run of a study has finished, or the study itself has begun, ended or gone: {id, name, state, done, …}. */
 export function hearOfStudy({ event, study }) {
   const { studies } = now();
+  if (event === "deleted" && now().open === study.id) closeStudy();
   if (studies !== null && study?.id) change({ studies: withNews(studies, event, study) });
   refresh();
 }

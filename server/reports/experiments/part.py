@@ -25,9 +25,9 @@ TILTS = tuple(math.radians(tilt) for tilt in range(10, 40, 5))
 RAMPS = (0.050,)
 
 UNKNOWNS = (
-    "Section 6 prints curves without numbers, no gains, and neither where its runs start nor how long they last. Each of "
-    "our runs is one eight at its path step, starts at the eight's first point, heading along it, with the default "
-    "gains.",
+    "Section 6 prints curves without numbers, no gains, and neither where its runs start nor how long they last. "
+    "Each of our runs is one eight at its path step, starts at the eight's first point, heading along it, with the "
+    "default gains.",
     "Section 6 is measured on a robot whose magnet, weight and friction are not printed. Ours walks on plants that are "
     "assumed: none was changed to come nearer to the paper. The runs are without camera and estimate (the "
     "controllers see the robot's true pose) and without serial line and coils (the field is the commanded one).",
@@ -116,7 +116,7 @@ def _width(found: Scatter, key: tuple[str, int, int]) -> tuple[Cell, ...]:
         label, sweep, tilt, len(law.values),
         *(_number(value) for value in (law.mean.value, law.mean.low, law.mean.high)),
         _number(law.variance.value), _number(law.deviation.value),
-        *(("", "", "") if fit is None else (_number(fit.shape.value), _number(fit.scale.value), _number(fit.p_anderson))),
+        *(("", "", "") if fit is None else map(_number, (fit.shape.value, fit.scale.value, fit.p_anderson))),
         *paper,
     )  # fmt: skip
 

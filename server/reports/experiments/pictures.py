@@ -85,7 +85,7 @@ def of_paths(studies: Studies, tables: Tables) -> list[Picture]:
     drawn = (
         ("paths_tilt", "One eight at a sweep of 10°: tilt from left to right, path step from above (paper: first "
          "figure of paths).", PARAMETRIC, tilts),
-        ("paths_sweep", "One eight at a tilt of 25° and Δt = 0.2 s (paper: second figure of paths).", PARAMETRIC, sweeps),
+        ("paths_sweep", "One eight at a tilt of 25°, Δt = 0.2 s (paper: second figure of paths).", PARAMETRIC, sweeps),
         ("paths_controllers", "Gb above, Ob below, Δt = 0.1 s (paper: third figure of paths).", DISTRIBUTIONS, both),
     )  # fmt: skip
     found = []

@@ -10,7 +10,7 @@ import numpy as np
 from control.studies.analysis.intervals import Interval, t_quantile
 from server.reports.experiments.measured import STEPS, Measured, at_steps, shown
 from server.reports.experiments.tilt_claims import interval_of
-from server.reports.experiments.truth import Truth, all_of, below, counted, finding, lies_at
+from server.reports.experiments.truth import Truth, all_of, below, counted, finding, lies_at, lies_near
 from server.reports.findings import Finding
 from server.reports.study.naming import with_interval
 
@@ -94,7 +94,7 @@ def slope(found: Measured) -> Interval:
 def _best_at(found: Measured, tilt: int, sweep: float) -> Finding:
     each = {step: interval_of(found.best("sweep", tilt=tilt, step=step)) for step in STEPS}
     whole = interval_of(found.best("sweep", tilt=tilt))
-    truth = lies_at(whole, sweep, sweep)
+    truth = lies_near(whole, sweep)
     texts = {step: "not told" if one is None else with_interval(one, "°") for step, one in each.items()}
     mean = "not told" if whole is None else with_interval(whole, "°")
     paper = f"at a tilt of {tilt}°, the best sweep is about {sweep:.0f}°"

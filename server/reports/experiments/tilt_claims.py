@@ -19,8 +19,8 @@ from server.reports.experiments.truth import (
     below,
     counted,
     finding,
-    lies_at,
     lies_below,
+    lies_near,
     most_of,
 )
 from server.reports.findings import Finding
@@ -88,9 +88,7 @@ def _near(best: Optimum | None, means: Array, wanted: float) -> Truth:
         return Truth.OPEN
     if float(np.ptp(means)) < NO_EFFECT * float(means.min()):
         return Truth.NO
-    if best.kind in (Kind.LOWER_EDGE, Kind.UPPER_EDGE):
-        return Truth.NO
-    return lies_at(interval_of(best), wanted, wanted)
+    return lies_near(interval_of(best), wanted)
 
 
 def _where(best: Optimum | None, means: Array) -> str:
@@ -105,7 +103,7 @@ def _where(best: Optimum | None, means: Array) -> str:
 
 
 def cause(points: Sequence[TiltPoint]) -> Finding:
-    """Why there is a minimum: what a pivot switch of the rigid plant does at the lowest, the best and the highest tilt."""
+    """Why there is a minimum: what a pivot switch of the rigid plant does at a low, a middle and a high tilt."""
     low, middle, high = (
         min(points, key=lambda one: abs(one.tilt - math.radians(tilt))) for tilt in LOOKED_AT
     )

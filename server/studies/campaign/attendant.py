@@ -47,7 +47,7 @@ class Attendant:
         self._rules = rules
         self._may_arm = operator.may_arm
         self._order: Stopped | None = None
-        self._asked_at = self._held_at = -math.inf
+        self._asked_at = self._held_at = self._disk_refused_at = -math.inf
 
     def stop(self, reason: str, *, is_end: bool = False) -> None:
         """From any thread and from signal handlers: what goes on ends at the next tick. The first order counts."""
@@ -70,10 +70,10 @@ class Attendant:
         give_up = self._operator.now + self._rules.patience
         while True:
             snapshot = self.tick()
-            if self._is_fit(snapshot):
+            obstacle = self._further(snapshot, gait)
+            if obstacle is None:
                 self._may_arm = False
                 return snapshot
-            obstacle = self._further(snapshot, gait)
             if not obstacle:
                 give_up = self._operator.now + self._rules.patience
             elif self._operator.now > give_up:
@@ -86,8 +86,11 @@ class Attendant:
     def _is_cool(self, snapshot: Snapshot) -> bool:
         return all(heat <= self._rules.cool_to for heat in snapshot.coil_heat)
 
-    def _further(self, snapshot: Snapshot, gait: Gait) -> str:
-        """Do what may be done towards a rig that is fit; what bars the way, "" for what only takes its time."""
+    def _further(self, snapshot: Snapshot, gait: Gait) -> str | None:
+        """Do what may be done towards a rig that is fit; what bars the way, "" for what only takes its time, None
+        where a run may begin."""
+        if self._is_fit(snapshot):
+            return self._disk_trouble()
         if snapshot.rig is not RigState.HELD:
             self._held_at = self._operator.now
         match snapshot.rig:
@@ -106,6 +109,17 @@ class Attendant:
             case RigState.ARMED:
                 return self._told(f"waiting: {snapshot.tracking_reason or 'something bars the way'}")
         return ""
+
+    def _disk_trouble(self) -> str | None:
+        """Why a run could not be recorded, None where it could."""
+        if self._operator.now - self._disk_refused_at < RETRY:
+            return "waiting for the disk"
+        try:
+            self._operator.check_disk()
+        except Refused as refusal:
+            self._disk_refused_at = self._operator.now
+            return self._told(f"waiting: {refusal}")
+        return None
 
     def _wait(self, words: str) -> str:
         self.say(words)

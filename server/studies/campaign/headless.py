@@ -69,8 +69,11 @@ class HeadlessOperator:
     def do(self, act: Callable[[ControlLoop], T]) -> T:
         return act(self._loop)
 
-    def start(self, request: RunRequest) -> str:
+    def check_disk(self) -> None:
         self._recording.check(self._machine)
+
+    def start(self, request: RunRequest) -> str:
+        self.check_disk()
         run = Run(new_id(), request, RunState.RUNNING, datetime.now(UTC))
         self._loop.start(run.id, request)
         self._recording.begin(self._machine, run)

@@ -71,6 +71,9 @@ class RigOperator:
     def do(self, act: Callable[[ControlLoop], T]) -> T:
         return self._answer(self._rig.between_ticks(lambda: act(self._rig.machine.loop)))
 
+    def check_disk(self) -> None:
+        self._rig.check_recording()
+
     def start(self, request: RunRequest) -> str:
         return self._answer(self._rig.begin_run(request)).id
 

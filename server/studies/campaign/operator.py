@@ -45,6 +45,10 @@ class Operator(Protocol):
         """Between two ticks; raises what `act` raises, `Refused` among it."""
         ...
 
+    def check_disk(self) -> None:
+        """Raises `Refused` where a run could not be recorded."""
+        ...
+
     def start(self, request: RunRequest) -> str:
         """Start a run that is recorded, and listed in the catalogue; its id. Raises like `ControlLoop.start`."""
         ...

@@ -25,8 +25,6 @@ ID = "way-back"
 
 
 class WayBack:
-    """limits: of the rig."""
-
     def __init__(self, operator: Operator, attendant: Attendant, rules: Rules) -> None:
         self._operator = operator
         self._attendant = attendant

@@ -200,9 +200,7 @@ def test_a_kept_kernel_is_known_by_the_laws_that_it_was_made_of() -> None:
 
 
 def test_the_compiler_is_not_loaded_before_a_run_needs_it() -> None:
-    program = (
-        "import sys; import control.studies.batch; print({'numba', 'mujoco'} & set(sys.modules))"
-    )
+    program = "import sys; import control.studies.batch; print({'numba', 'mujoco'} & set(sys.modules))"
     result = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     assert result.stdout.strip() == "set()"
 
