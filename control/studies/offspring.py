@@ -1,4 +1,4 @@
-"""Worker processes end with the one that started them. Loads nothing else, so that it holds from their first instant."""
+"""Worker processes end with the one that started them. Loads nothing else: it holds from their first instant."""
 
 from __future__ import annotations
 

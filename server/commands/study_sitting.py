@@ -80,6 +80,7 @@ def _as_batch(study: Study, sitting: Sitting) -> Carried:
 
 def _on_a_rig(study: Study, sitting: Sitting) -> Carried:
     from control.link.conversion import LinkError
+    from control.simulation.plants import MissingExtra
     from server.assembly import build_machine
     from server.studies.campaign import Campaign
     from server.studies.campaign.headless import HeadlessOperator
@@ -95,7 +96,7 @@ def _on_a_rig(study: Study, sitting: Sitting) -> Carried:
             campaign = Campaign(study, operator, archive.catalogue, _News(study, bar))
             with _signals(machine, campaign):
                 outcome = campaign.run()
-    except (LinkError, CameraError, OSError) as error:
+    except (LinkError, CameraError, MissingExtra, OSError) as error:
         raise fail(f"the rig cannot be opened: {error}", REFUSED) from error
     return Carried(outcome.state, outcome.reason)
 

@@ -13,6 +13,7 @@ from tests.benchmarks import (
     recording_cost,
     rigid_pace,
     simulation_pace,
+    study_pace,
     tracking_cost,
 )
 

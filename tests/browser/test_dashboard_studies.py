@@ -12,7 +12,7 @@ from playwright.sync_api import Locator, Page, expect
 
 pytestmark = pytest.mark.exclusive
 
-COMPUTED_WITHIN = 60.0
+COMPUTED_WITHIN = 90.0
 """A batch of some short runs, its process started at a low priority, s."""
 
 
@@ -60,6 +60,7 @@ def test_a_batch_is_made_by_the_form_watched_to_its_end_and_reported(
     served: ServedRig, visit: Visit, tmp_path: Path
 ) -> None:
     page = visit.page
+    wait_for_the_robot(served)
     form = short_study(page, "two sweeps", seconds=3)
     size = form.get_by_role("complementary", name="Before it starts")
     expect(size).to_contain_text("4 runs")
@@ -87,6 +88,12 @@ def test_a_batch_is_made_by_the_form_watched_to_its_end_and_reported(
     page.get_by_role("dialog").get_by_role("button", name="Delete").click()
     expect(page.get_by_text("No study yet.")).to_be_visible()
     assert served.ask("/studies")["studies"] == []
+
+
+def wait_for_the_robot(served: ServedRig) -> None:
+    """The page's selection, which a new study begins with; by a time law for which nobody waits for a compiler."""
+    selection = served.ask("/selection")
+    served.send("PUT", "/selection", {**selection, "gait": {**selection["gait"], "time_law": "wait"}})
 
 
 def what_is_wrong_is_said_beside_the_field(form: Locator) -> None:
@@ -121,10 +128,10 @@ def vary_a_controller_too(form: Locator) -> None:
 
 
 def look_at_the_report(page: Page, study: Locator) -> None:
-    with page.context.expect_page() as opened:
+    with page.context.expect_page(timeout=COMPUTED_WITHIN * 1e3) as opened:
         study.get_by_role("link", name="Report").click()
     report = opened.value
-    expect(report.locator("h1")).to_contain_text("two sweeps", timeout=COMPUTED_WITHIN * 1e3)
+    expect(report.locator("h1")).to_contain_text("two sweeps")
     report.close()
 
 
@@ -151,7 +158,6 @@ def test_a_campaign_walks_the_rig_is_stopped_by_stop_and_resumed_by_a_person(
     button(study, "Resume study").click()
     expect(study.locator(".study-now")).to_contain_text("waiting for a person", ignore_case=True)
     button(page, "Reset").click()
-    button(page, "Arm").click()
     eventually(
         lambda: served.ask("/studies")["studies"][0]["done"] > done,
         "another run of the study",

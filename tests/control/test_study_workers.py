@@ -41,10 +41,10 @@ def test_results_come_in_the_order_of_the_runs_and_are_those_of_each_run_alone()
 def test_runs_are_taken_as_they_are_needed_and_no_faster():
     taken = []
     endless = (taken.append(run.index) or run for run in runs(2000))
-    results = carry_out(endless, jobs=1)
-    for _ in range(5):
-        next(results)
-    results.close()
+    with hired(1) as workers:
+        results = workers.carry_out(endless)
+        for _ in range(5):
+            next(results)
     assert len(taken) <= 5 + 2 * MOST
 
 
@@ -73,7 +73,7 @@ def test_a_chunk_is_as_many_runs_as_take_some_tenths_of_a_second():
     assert pace.take(iter(())) == ()
 
 
-def test_a_run_that_raises_is_a_failed_one_and_the_others_go_on(tmp_path):
+def test_a_run_that_raises_is_a_failed_one_and_the_others_go_on():
     wanted = runs(2)
     wanted[2] = dataclasses.replace(
         wanted[2],

@@ -9,19 +9,32 @@ from __future__ import annotations
 import json
 import os
 import sys
-import traceback
+from typing import NoReturn
 
 from control.studies import batch
 from server import cli
 from server.commands import studies, study_sitting
 from server.studies import carrying_out, store
 
+BROKEN = 70
+"""Exit status of a command that raised."""
 LOADED = (batch, studies, study_sitting, carrying_out, store)
 """What the commands load when they are needed."""
 
 
 def say(words: object) -> None:
     os.write(int(sys.argv[1]), f"{words}\n".encode())
+
+
+def carry_out() -> NoReturn:
+    """Ends this process with the status of the command."""
+    status = BROKEN
+    try:
+        cli.main()
+    except SystemExit as end:
+        status = end.code if isinstance(end.code, int) else 1
+    finally:
+        os._exit(status)
 
 
 def main() -> None:
@@ -31,14 +44,7 @@ def main() -> None:
             os.setsid()
             say(os.getpid())
             sys.argv[:] = ["pivotrig", *json.loads(line)]
-            try:
-                cli.main()
-            except SystemExit as end:
-                os._exit(end.code if isinstance(end.code, int) else 1)
-            except BaseException:
-                traceback.print_exc()
-                os._exit(70)
-            os._exit(0)
+            carry_out()
         say(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]))
 
 

@@ -10,14 +10,15 @@ import pytest
 from control.snapshot import RigState, Snapshot
 from server.recording.reading.recording import Recording
 from server.studies.campaign.way_back import ID as WAY_BACK
-from server.studies.study import RESULTS
+from server.studies.study import RESULTS, Study
 from tests.server.campaign_bench import CIRCLE, CampaignBench, Sitting, indices, off, start_of
 
 GRID = [
     {"of": "gait.tilt_deg", "values": [20, 25, 30]},
     {"of": "gait.sweep_deg", "values": [20, 30, 40]},
 ]
-EIGHT = {"name": "eight"}
+WHOLE_EIGHTS = {"trajectory": {"name": "eight"}, "gait": {"path_step_s": 0.3}, "duration_s": None}
+"""One each, of 20 s."""
 
 
 @pytest.fixture
@@ -27,11 +28,12 @@ def bench(tmp_path: Path) -> Iterator[CampaignBench]:
     bench.close()
 
 
+@pytest.mark.timeout(1800)
 def test_a_3x3x2_campaign_returns_to_its_start_each_time_though_the_camera_fails_in_the_middle(
     bench: CampaignBench, full: bool
 ) -> None:
     """Start a campaign and go home. When the camera is unplugged for a while, the run that was on is made again."""
-    real = {"trajectory": EIGHT, "duration_s": None} if full else {"duration_s": 1.2}
+    real = WHOLE_EIGHTS if full else {"duration_s": 1.2}
     study = bench.study(name="3 x 3 x 2", axes=GRID, repeats=2, **real)
 
     def unplug(sitting: Sitting, snapshot: Snapshot) -> None:
@@ -54,7 +56,7 @@ def test_a_3x3x2_campaign_returns_to_its_start_each_time_though_the_camera_fails
     _every_run_is_in_the_catalogue(bench, study)
 
 
-def _every_run_is_in_the_catalogue(bench: CampaignBench, study) -> None:
+def _every_run_is_in_the_catalogue(bench: CampaignBench, study: Study) -> None:
     rows = {row.run_id: row for row in study.rows()}
     finished, aborted = bench.runs(study, "finished"), bench.runs(study, "aborted")
     assert {run.id for run in finished} == set(rows)

@@ -22,7 +22,7 @@ from server.reports.experiments.designs import DISTRIBUTIONS, PARAMETRIC, RIGID,
 from server.reports.experiments.measured import Measured
 from server.reports.experiments.part import part, widths
 from server.reports.experiments.scatter_claims import scatter_of
-from server.reports.experiments.truth import Truth, all_of, below, lies_at, most_of
+from server.reports.experiments.truth import Truth, all_of, below, most_of
 from server.reports.findings import Verdict
 from server.reports.reproduction import Extent, reproduce
 from server.reports.study.printed import PRINTED
@@ -175,7 +175,6 @@ def test_truth_is_told_by_intervals_alone():
     assert below(np.array([1.0]), np.array([2.0])) is Truth.OPEN
     assert below(np.array([]), high) is Truth.OPEN
     assert below(np.full(3, 1.0), np.full(3, 2.0)) is Truth.YES
-    assert lies_at(None, 20.0, 20.0) is Truth.OPEN
     assert all_of([Truth.YES, Truth.OPEN]) is Truth.OPEN
     assert all_of([Truth.OPEN, Truth.NO]) is Truth.NO
     assert all_of([]) is Truth.OPEN

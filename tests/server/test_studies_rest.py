@@ -6,7 +6,14 @@ import io
 import json
 import zipfile
 
+import httpx
 import pytest
+
+from server.app import create_app
+from server.archive import Archive
+from server.assembly import build_machine
+from server.rig import Rig
+from server.settings import RigFile
 
 pytestmark = pytest.mark.anyio
 
@@ -167,6 +174,30 @@ async def test_a_batch_is_stopped_and_resumed_and_a_second_one_beside_it_refused
     assert stopped["state"] in ("stopped", "planned")
     assert stopped["done"] >= done
     assert (await api.delete(f"/studies/{study['id']}")).status_code == 204
+
+
+async def test_a_server_that_ends_leaves_its_batch_interrupted_and_the_next_one_goes_on_with_it(
+    tmp_path, serve
+):
+    def application():
+        archive = Archive.open(tmp_path)
+        return create_app(Rig(build_machine(RigFile(), realtime=True), recorder=archive.recorder), archive)
+
+    async with serve(application()) as at, client_of(at) as api:
+        study = await made(api, definition=LONG, jobs=1)
+        async with asyncio.timeout(DONE_WITHIN):
+            while (await api.get(f"/studies/{study['id']}")).json()["done"] == 0:
+                await asyncio.sleep(0.1)
+    async with serve(application()) as at, client_of(at) as api:
+        left = (await api.get("/studies")).json()["studies"][0]
+        assert (left["state"], left["current"]) == ("interrupted", "")
+        resumed = (await api.post(f"/studies/{study['id']}/resume", json={"jobs": 1})).json()
+        assert resumed["state"] == "running"
+        assert resumed["done"] >= left["done"] > 0
+
+
+def client_of(at):
+    return httpx.AsyncClient(base_url=at.url + "/api/v1", timeout=DONE_WITHIN)
 
 
 async def test_a_study_may_be_made_without_being_begun(api):

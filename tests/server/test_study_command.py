@@ -10,7 +10,7 @@ from control.controllers import controllers
 from server import cli
 from server.studies.store import StudyStore
 
-STUDY = definition(2, gait={"time_law": "wait"})
+STUDY = definition(2)
 
 
 @pytest.fixture
@@ -35,7 +35,7 @@ def file(tmp_path):
 
 
 def changed(file, **changes):
-    file.write_text(definition(**{"gait": {"time_law": "wait"}, "repeats": 2, **changes}).to_toml())
+    file.write_text(definition(**{"repeats": 2, **changes}).to_toml())
 
 
 def test_a_study_says_what_it_will_take_then_what_came_of_it(pivotrig, file, tmp_path):

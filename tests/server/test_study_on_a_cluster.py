@@ -1,5 +1,6 @@
 """One worker, two, or a Dask cluster: the same table, to the byte; and what goes wrong with a cluster, in words."""
 
+import logging
 import threading
 import time
 
@@ -27,7 +28,11 @@ MIXED = definition(
 @pytest.fixture(scope="module")
 def cluster():
     with LocalCluster(
-        n_workers=2, threads_per_worker=1, processes=True, dashboard_address=":0", silence_logs="CRITICAL"
+        n_workers=2,
+        threads_per_worker=1,
+        processes=True,
+        dashboard_address=":0",
+        silence_logs=logging.CRITICAL,
     ) as cluster:
         yield cluster
 
@@ -42,7 +47,7 @@ def test_the_table_is_the_same_whoever_does_the_work(cluster, tmp_path):
 def test_a_study_whose_workers_are_lost_says_so_and_goes_on_elsewhere(cluster, tmp_path, monkeypatch):
     monkeypatch.setattr(dask_crew, "WITHOUT_WORKERS", 0.5)
     monkeypatch.setattr(dask_crew, "LOOK", 0.1)
-    wanted = definition(40, gait={"time_law": "wait"})
+    wanted = definition(40)
     study = StudyStore(tmp_path).create(wanted)
     scaled = threading.Event()
 
@@ -63,7 +68,7 @@ def test_a_study_whose_workers_are_lost_says_so_and_goes_on_elsewhere(cluster, t
 def test_a_scheduler_that_goes_away_is_told_in_words(tmp_path, monkeypatch):
     monkeypatch.setattr(dask_crew, "WITHOUT_WORKERS", 0.5)
     monkeypatch.setattr(dask_crew, "LOOK", 0.1)
-    study = StudyStore(tmp_path).create(definition(40, gait={"time_law": "wait"}))
+    study = StudyStore(tmp_path).create(definition(40))
     own = LocalCluster(
         n_workers=1, threads_per_worker=1, processes=False, protocol="tcp", dashboard_address=":0"
     )

@@ -10,6 +10,9 @@ from contextlib import contextmanager
 import pytest
 from study_bench import carried_out, definition, opened, table_of
 
+from control.metrics import Metrics
+from control.studies.batch import simulate
+from control.studies.table import figures
 from server.catalogue.catalogue import Catalogue
 from server.catalogue.rebuilding import put_in_order, rebuild
 from server.catalogue.shelf import OpenShelf
@@ -105,11 +108,9 @@ def test_a_reader_gets_each_row_once_and_only_whole_ones(study):
 
 
 def test_a_row_keeps_every_bit_on_the_disk(study):
-    from control.studies.batch import simulate
-    from control.studies.table import figures
-
     run = study.definition.plan().run(7)
     [metrics] = simulate([run])
+    assert isinstance(metrics, Metrics)
     assert study.results()[7].metrics == figures(metrics)
 
 

@@ -9,8 +9,8 @@ import numpy as np
 
 from control.studies.analysis.intervals import Interval, t_quantile
 from server.reports.experiments.measured import STEPS, Measured, at_steps, shown
-from server.reports.experiments.tilt_claims import interval_of
-from server.reports.experiments.truth import Truth, all_of, below, counted, finding, lies_at, lies_near
+from server.reports.experiments.minimum import RESOLVED, between, near, place_of
+from server.reports.experiments.truth import Truth, all_of, below, counted, finding
 from server.reports.findings import Finding
 from server.reports.study.naming import with_interval
 
@@ -92,24 +92,32 @@ def slope(found: Measured) -> Interval:
 
 
 def _best_at(found: Measured, tilt: int, sweep: float) -> Finding:
-    each = {step: interval_of(found.best("sweep", tilt=tilt, step=step)) for step in STEPS}
-    whole = interval_of(found.best("sweep", tilt=tilt))
-    truth = lies_near(whole, sweep)
+    each = {step: place_of(found.best("sweep", tilt=tilt, step=step)) for step in STEPS}
+    whole = place_of(found.best("sweep", tilt=tilt))
+    truth = near(found, "sweep", sweep, tilt=tilt)
     texts = {step: "not told" if one is None else with_interval(one, "°") for step, one in each.items()}
     mean = "not told" if whole is None else with_interval(whole, "°")
     paper = f"at a tilt of {tilt}°, the best sweep is about {sweep:.0f}°"
-    return finding("6, sweep", paper, f"mean over the path steps: {mean}; {at_steps(texts)}", truth, SLIP)
+    return finding(
+        "6, sweep",
+        paper,
+        f"mean over the path steps: {mean}; {at_steps(texts)}",
+        truth,
+        RESOLVED + "; " + SLIP,
+    )
 
 
 def _conclusion(found: Measured) -> Finding:
     low, high = BEST_SWEEPS
-    whole = interval_of(found.best("sweep"))
-    each = {tilt: interval_of(found.best("sweep", tilt=tilt)) for tilt in TILTS}
+    whole = place_of(found.best("sweep"))
+    each = {tilt: place_of(found.best("sweep", tilt=tilt)) for tilt in TILTS}
     texts = "; ".join(
         f"tilt {tilt}°: {'not told' if one is None else with_interval(one, '°')}"
         for tilt, one in each.items()
     )
-    truth = lies_at(whole, low, high)
+    truth = between(found, "sweep", BEST_SWEEPS)
     mean = "not told" if whole is None else with_interval(whole, "°")
     paper = f"the best sweep is {low:.0f}° to {high:.0f}°"
-    return finding("6, sweep", paper, f"mean over tilts and path steps: {mean}; {texts}", truth, SLIP)
+    return finding(
+        "6, sweep", paper, f"mean over tilts and path steps: {mean}; {texts}", truth, RESOLVED + "; " + SLIP
+    )

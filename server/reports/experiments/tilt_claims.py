@@ -13,6 +13,7 @@ from control.studies.analysis.intervals import Interval, t_quantile
 from control.studies.analysis.optimum import Kind, Optimum
 from server.reports.drawing import MM
 from server.reports.experiments.measured import STEPS, Array, Measured, at_steps, shown
+from server.reports.experiments.minimum import RESOLVED, near
 from server.reports.experiments.truth import (
     Truth,
     all_of,
@@ -20,7 +21,6 @@ from server.reports.experiments.truth import (
     counted,
     finding,
     lies_below,
-    lies_near,
     most_of,
 )
 from server.reports.findings import Finding
@@ -60,11 +60,11 @@ def smallest(plant: str, measured: Measured, sweep: int) -> Finding:
         fixed: dict[str, object] = {"sweep": sweep} if step is None else {"sweep": sweep, "step": step}
         best = measured.best("tilt", **fixed)
         means = np.array([float(group.mean()) for group in _groups(measured, fixed)])
-        truths.append(_near(best, means, SWEEPS[sweep]))
+        truths.append(Truth.NO if _same(means) else near(measured, "tilt", SWEEPS[sweep], **fixed))
         texts[0.1 if step is None else step] = _where(best, means)
     return finding(
         "6, tilt", f"at a sweep of {sweep}°, ME falls to a minimum near {SWEEPS[sweep]:g}° of tilt, then rises",
-        f"{TITLES[plant]}, 10° to 35°: {at_steps(texts)}", all_of(truths), _note(plant, sweep),
+        f"{TITLES[plant]}, 10° to 35°: {at_steps(texts)}", all_of(truths), f"{RESOLVED}; {_note(plant, sweep)}",
     )  # fmt: skip
 
 
@@ -83,19 +83,16 @@ def _groups(measured: Measured, fixed: dict[str, object]) -> list[Array]:
     return [group for tilt in measured.levels("tilt") if len(group := measured.at(tilt=tilt, **fixed))]
 
 
-def _near(best: Optimum | None, means: Array, wanted: float) -> Truth:
-    if best is None or not len(means):
-        return Truth.OPEN
-    if float(np.ptp(means)) < NO_EFFECT * float(means.min()):
-        return Truth.NO
-    return lies_near(interval_of(best), wanted)
+def _same(means: Array) -> bool:
+    """The tilt does nothing."""
+    return len(means) > 0 and float(np.ptp(means)) < NO_EFFECT * float(means.min())
 
 
 def _where(best: Optimum | None, means: Array) -> str:
     if best is None or not len(means):
         return "no run finished"
     change = f"ME {means.min():.3g} to {means.max():.3g}"
-    if float(np.ptp(means)) < NO_EFFECT * float(means.min()):
+    if _same(means):
         return f"no dependence on the tilt ({change})"
     if best.kind is Kind.UNKNOWN:
         return f"smallest at {best.measured:g}°, without an interval ({change})"
@@ -165,8 +162,3 @@ def _mostly(found: Measured) -> Finding:
     paper = "over all sweeps, the minimum is near 25° in most of the cases"
     ours = f"25° is better than both 20° and 30°: {counted(truths)} pairs of sweep and path step"
     return finding("6, tilt", paper, ours, most_of(truths), ASSUMED["slip"])
-
-
-def interval_of(best: Optimum | None) -> Interval | None:
-    """Of the place of a minimum that was found; None where the data do not tell one."""
-    return None if best is None or best.kind in (Kind.FLAT, Kind.UNKNOWN) else best.where

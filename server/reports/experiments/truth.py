@@ -55,28 +55,6 @@ def lies_below(one: Interval, other: Interval) -> Truth:
     return Truth.NO if one.low > other.high else Truth.OPEN
 
 
-NARROW = 10.0
-"""An interval of an angle this wide (deg, two of the paper's steps) still says where a minimum lies. A choice."""
-
-
-NEAR = 2.5
-"""What the paper calls near or about an angle, deg: half of a step of its studies."""
-
-
-def lies_near(where: Interval | None, angle: float) -> Truth:
-    """Whether a minimum lies near an angle, deg."""
-    return lies_at(where, angle - NEAR, angle + NEAR)
-
-
-def lies_at(where: Interval | None, low: float, high: float) -> Truth:
-    """Whether a minimum lies between two angles, deg: its interval reaches them and is narrow enough to say so."""
-    if where is None or not where.known:
-        return Truth.OPEN
-    if where.low > high or where.high < low:
-        return Truth.NO
-    return Truth.YES if where.high - where.low <= NARROW else Truth.OPEN
-
-
 def all_of(truths: Iterable[Truth]) -> Truth:
     """No where one is no; open where nothing was asked."""
     found = set(truths)

@@ -23,14 +23,14 @@ def planned(
     **further: Any,
 ) -> PlannedRun:
     """Six seconds of a walk unless `duration` says otherwise. further: fields of `PlannedRun`."""
-    named = [c if isinstance(c, Choice) else Choice(c) for c in (controller, trajectory)]
+    law, path = (c if isinstance(c, Choice) else Choice(c) for c in (controller, trajectory))
     run = {"seed": 1, "duration": 6.0, "start": BOTTOM, **further}
     return PlannedRun(
         index=0,
         set=0,
         repeat=0,
         values={},
-        selection=Selection(*named, gait or Gait()),
+        selection=Selection(law, path, gait or Gait()),
         plant=plant if isinstance(plant, PlantChoice) else PlantChoice(plant),
         **run,
     )

@@ -26,7 +26,7 @@ def found(levels: list[float], repeats: int, error, noise: float = 0.03, seed: i
 def test_a_planted_optimum_lies_inside_its_interval_in_nine_of_ten_seeds(
     full: bool, levels: list[float], repeats: int
 ) -> None:
-    seeds = 200 if full else 60
+    seeds = 200 if full else 30
     optima = [found(levels, repeats, bowl(24.5), seed=seed) for seed in range(seeds)]
     assert sum(one.where.holds(24.5) for one in optima) >= 0.9 * seeds
     assert sum(one.value.low <= 0.2 <= one.value.high for one in optima) >= 0.85 * seeds

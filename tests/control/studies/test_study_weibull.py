@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import stats
 
@@ -10,15 +10,16 @@ from control.studies.analysis.distribution import describe
 from control.studies.analysis.weibull import FEWEST, fit, statistics
 from control.studies.analysis.weibull_location import fit_located
 
-SAMPLES = 300
-"""Of a coverage; 95 % has a standard error of 1.3 %."""
-FOUR_SIGMA = 0.05
+SAMPLES = 200
+"""Of a coverage; 95 % has a standard error of 1.5 %."""
+FOUR_SIGMA = 0.06
 
 
 def drawn(shape: float, scale: float, count: int, seed: int) -> np.ndarray:
     return scale * np.random.default_rng(seed).weibull(shape, count)
 
 
+@settings(max_examples=25)
 @given(st.floats(0.6, 15.0), st.floats(0.01, 100.0), st.integers(FEWEST, 60), st.integers(0, 1000))
 def test_the_fit_is_the_one_of_the_highest_likelihood(
     shape: float, scale: float, count: int, seed: int
