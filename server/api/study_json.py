@@ -87,7 +87,6 @@ class StudyJson:
             **self._tuned(study, digest.done),
         }
 
-
     def _tuned(self, study: Study, done: int) -> dict[str, Any]:
         """What a search for the best has learned; worked out when there are new rows, since that takes a moment."""
         if study.definition.design != "tune":

@@ -3,6 +3,7 @@
 import json
 import subprocess
 import sys
+from typing import Any
 
 import pytest
 from typer.testing import CliRunner
@@ -21,9 +22,10 @@ def run(*arguments: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run([*RUN, *arguments], capture_output=True, text=True, timeout=280, check=False)
 
 
-def result(*arguments: str) -> dict[str, float]:
-    answer = run(*EIGHT, *arguments)
-    assert answer.returncode == 0, answer.stderr
+def result(*arguments: str) -> dict[str, Any]:
+    """In this process: to start one takes longer than most of these walks."""
+    answer = CliRunner().invoke(app, ["run", *EIGHT, *arguments])
+    assert answer.exit_code == 0, answer.stderr
     return json.loads(answer.stdout)
 
 
@@ -38,8 +40,9 @@ def test_the_eight_is_walked_within_the_allowed_error(plant: str, allowed_mm: fl
     assert metrics["sweeps"] >= metrics["steps"] > 100 * duration / EIGHT_LASTS
 
 
-def test_the_same_seed_gives_the_same_result_to_the_last_digit() -> None:
-    first, second = (result("--duration", "8", "--seed", "5") for _ in range(2))
+def test_the_same_seed_gives_the_same_result_to_the_last_digit_in_another_process_too() -> None:
+    arguments = ("--duration", "8", "--seed", "5")
+    first, second = result(*arguments), json.loads(run(*EIGHT, *arguments).stdout)
     for measured in ("wall_s", "run_id"):
         first.pop(measured)
         second.pop(measured)

@@ -133,12 +133,17 @@ def scatter_with(draw):
     return scatter_of(Measured.of(one), Measured.of(one, "steps"))
 
 
+@pytest.fixture(scope="module")
+def weibulls():
+    return scatter_with(weibull)
+
+
 def verdict_of(found, words):
     return next(one.verdict for one in found if words in one.paper)
 
 
-def test_a_weibull_scatter_is_found_to_be_one_and_its_sets_are_compared():
-    found = scatter_claims.of_scatter(scatter_with(weibull))
+def test_a_weibull_scatter_is_found_to_be_one_and_its_sets_are_compared(weibulls):
+    found = scatter_claims.of_scatter(weibulls)
     assert verdict_of(found, "more Weibull") is YES
     assert verdict_of(found, "moves the mean up") is YES
     assert verdict_of(found, "the peak of the curve") is YES
@@ -157,13 +162,13 @@ def test_a_scatter_of_two_heaps_is_not_called_weibull_and_a_worse_ob_is_not_call
     assert verdict_of(found, "Ob has the smaller mean") is not YES
 
 
-def test_the_papers_inconsistent_rows_are_named_and_never_judged():
-    found = scatter_claims.of_scatter(scatter_with(weibull))
+def test_the_papers_inconsistent_rows_are_named_and_never_judged(weibulls):
+    found = scatter_claims.of_scatter(weibulls)
     printed = next(one for one in found if "2 of the 6 printed rows" in one.ours)
     assert printed.verdict is OPEN
     assert "Ob {25,25}" in printed.ours
     assert "Gb {30,30}" in printed.ours
-    header, *rows = widths(scatter_with(weibull))
+    header, *rows = widths(weibulls)
     assert [row[-1] for row in rows].count("inconsistent") == 2
     assert len(rows) == 9
     assert {row[header.index("paper_variance")] for row in rows} >= {one.variance for one in PRINTED}
@@ -212,7 +217,7 @@ def test_the_rigid_study_is_the_study_of_the_tilts_on_another_plant():
     assert definition.duration_s == designs.RIGID_DURATION_S
 
 
-def short(one, seconds=4.0):
+def short(one, seconds=1.5):
     raw = {**one.definition.to_json(), "duration_s": seconds}
     return replace(one, definition=StudyDefinition.from_json(raw))
 

@@ -53,9 +53,9 @@ function Panels({ kind, study, layout, metric }) {
   `;
 }
 
-/** Only where it is of these two axes, in this order. */
-function surfaceOf({ surface }, { across, down }) {
-  const ours = surface?.axes.length === 2 && surface.axes[0] === across.name && surface.axes[1] === down?.name;
+/** Only where it is of these two axes, in this order, and of what is shown. */
+function surfaceOf({ surface, metric }, { across, down }) {
+  const ours = surface?.metric === metric && surface.axes.length === 2 && surface.axes[0] === across.name && surface.axes[1] === down?.name;
   return ours && surface.marks.flat().every(Number.isFinite) ? surface : null;
 }
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -56,11 +56,11 @@ def effects(samples: Samples) -> Effects | None:
         return None
     design = _Design.of([_codes(part, axis) for axis in factors], groups)
     found = design.analyse(*_moments(groups))
-    drawn = [design.analyse(*moments).shares[:, 0] for moments in _resampled(groups)]
+    drawn = design.analyse(*_resampled(groups)).shares
     rows = [
         Effect(
             tuple(factors[factor] for factor in term),
-            _share(float(found.shares[at, 0]), np.array([shares[at] for shares in drawn])),
+            _share(float(found.shares[at, 0]), drawn[at]),
             design.chance(found, at),
             design.freedoms[at],
             _swing(design, _means(groups), term),
@@ -140,13 +140,14 @@ def _moments(groups: Sequence[Array]) -> tuple[Array, Array]:
     return _means(groups)[:, None], np.array([within])
 
 
-def _resampled(groups: Sequence[Array]) -> Iterator[tuple[Array, Array]]:
-    """Moments of runs drawn again within each set; none where no set has two runs."""
-    if max(len(group) for group in groups) < 2:
-        return
+def _resampled(groups: Sequence[Array]) -> tuple[Array, Array]:
+    """Moments of runs drawn again within each set, (sets, draws) and (draws,); no draws where no set has two runs."""
+    draws = RESAMPLES if max(len(group) for group in groups) > 1 else 0
     rng = np.random.default_rng(SEED)
-    for _ in range(RESAMPLES):
-        yield _moments([group[rng.integers(len(group), size=len(group))] for group in groups])
+    again = [group[rng.integers(len(group), size=(draws, len(group)))] for group in groups]
+    means = np.array([runs.mean(axis=1) for runs in again])
+    within = sum(np.sum((runs - runs.mean(axis=1, keepdims=True)) ** 2, axis=1) for runs in again)
+    return means, np.asarray(within)
 
 
 def _terms(factors: int) -> list[Term]:

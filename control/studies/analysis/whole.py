@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from control.studies.analysis.comparison import Comparison, compare
 from control.studies.analysis.distribution import Distribution, describe
@@ -14,6 +15,9 @@ from control.studies.analysis.optimum import FEWEST_LEVELS, Optimum, optimum
 from control.studies.analysis.samples import ME, Row, Samples, samples
 from control.studies.analysis.screening import Influence, screening
 from control.studies.analysis.sets import SetSummary, best, summarise
+
+if TYPE_CHECKING:
+    from control.studies.analysis.joint import JointOptimum
 
 DISTRIBUTED = 20
 """Finished runs of a set from which on its distribution is described. A choice."""
@@ -27,7 +31,7 @@ MOST_COMPARED = 6
 @dataclass(frozen=True, slots=True)
 class Analysis:
     """best: the set with the smallest mean.  overall: the optimum along each numeric axis, the others averaged over.
-    apart: the same at each combination of the others.  effects: of a grid.  influences: of scattered points.
+    apart: the same at each combination of the others.  effects: of a grid.  influences, joint: of scattered points.
     distributions: row of the set in samples.points -> its runs.  drift: None where no order was given.
     """
 
@@ -38,6 +42,7 @@ class Analysis:
     apart: tuple[Optimum, ...]
     effects: Effects | None
     influences: tuple[Influence, ...]
+    joint: JointOptimum | None
     comparisons: tuple[Comparison, ...]
     distributions: dict[int, Distribution]
     drift: Drift | None
@@ -65,6 +70,7 @@ def analyse(
         () if found.scattered else _apart(found),
         None if found.scattered else effects(found),
         screening(found) if found.scattered else (),
+        _joint(found) if found.scattered else None,
         () if found.scattered else _comparisons(found),
         _distributions(found),
         None if order is None else drift(found, order),
@@ -101,6 +107,14 @@ def _apart(found: Samples) -> tuple[Optimum, ...]:
             each = (optimum(found, axis, dict(zip(others, values, strict=True))) for values in combinations)
             optima += [one for one in each if one is not None]
     return tuple(optima)
+
+
+def _joint(found: Samples) -> JointOptimum | None:
+    from control.studies.analysis.joint import (
+        joint_optimum,  # only a scattered design needs to load the learner
+    )
+
+    return joint_optimum(found)
 
 
 def _comparisons(found: Samples) -> tuple[Comparison, ...]:

@@ -76,6 +76,12 @@ class ErrorModel:
             mean, deviation = self._process.predict(places, return_std=True)
         return Belief(self._centre + self._unit * mean, self._unit * deviation)
 
+    def drawn(self, places: Floats, draws: int, seed: int) -> Floats:
+        """(places, draws) surfaces that the runs allow, in log units."""
+        with threadpool_limits(1):
+            surfaces = self._process.sample_y(places, draws, random_state=seed)
+        return self._centre + self._unit * surfaces
+
     @property
     def scatter(self) -> float:
         """Standard deviation of a single run, in log units: 0.1 is 10 % of the error."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from textwrap import fill
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -12,6 +13,8 @@ from numpy.typing import NDArray
 
 from server.reports.drawing import BLACK, MM, ORANGE, grid, label
 
+TITLE = 38
+"""Letters of a title beside the next one."""
 MARGIN = 4.0
 """Around the paths, mm."""
 
@@ -36,7 +39,7 @@ def trajectories(walks: Sequence[Walked], columns: int) -> Figure:
         one.set_xlim(low[0], high[0])
         one.set_ylim(low[1], high[1])
         one.set_aspect("equal")
-        label(one, "x, mm", "y, mm", f"{walk.title}\nME {walk.error:.3g}")
+        label(one, "x, mm", "y, mm", f"{fill(walk.title, TITLE)}\nME {walk.error:.3g}")
         one.title.set_fontsize(8)
     for spare in axes[len(walks) :]:
         spare.set_axis_off()

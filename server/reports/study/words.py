@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
 
 from control.studies.analysis.comparison import Comparison, Order
 from control.studies.analysis.distribution import REFUSED
@@ -23,6 +24,9 @@ from server.reports.study.naming import (
     with_interval,
 )
 
+if TYPE_CHECKING:
+    from control.studies.analysis.joint import JointOptimum
+
 MATTERS = 0.01
 """p below which an effect is called one: few enough false ones among a dozen terms. A choice."""
 MOST_NAMED = 4
@@ -34,6 +38,7 @@ def sentences(found: Analysis, table: StudyTable) -> list[str]:
         *_best(found),
         *(_optimum(found, one) for one in found.overall),
         *_apart(found),
+        *([] if found.joint is None else [_joint(found, found.joint)]),
         *_effects(found),
         *_comparisons(found.comparisons),
         *_distributions(found),
@@ -87,6 +92,21 @@ def _optimum(found: Analysis, one: Optimum) -> str:
     return (
         f"{begin}{metric} is smallest {one.kind.value} of what was tried, {where}, where it is {value}; "
         f"from end to end it goes from {ends}, and a better value may lie beyond."
+    )
+
+
+def _joint(found: Analysis, joint: JointOptimum) -> str:
+    places = [
+        f"{axis_name(axis)} {with_interval(where, axis_unit(axis))}" for axis, where in joint.where.items()
+    ]
+    places += [
+        f"{axis_name(axis)} {value} ({_percent(share)} of the drawn surfaces agree)"
+        for axis, (value, share) in joint.words.items()
+    ]
+    metric = short_metric(found.samples.metric)
+    return (
+        f"By a smooth surface through all sets, {metric} is smallest at {', '.join(places)}, where {with_interval(joint.value)} "
+        "is expected. An interval as wide as its axis says that the place cannot be told."
     )
 
 

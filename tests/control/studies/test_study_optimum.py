@@ -5,8 +5,11 @@ import math
 import numpy as np
 import pytest
 
+from control.studies.analysis.joint import joint_optimum
 from control.studies.analysis.optimum import Kind, Optimum, optimum
-from tests.control.studies.planted import one_axis, planted
+from control.studies.analysis.samples import samples
+from control.studies.definition import StudyDefinition
+from tests.control.studies.planted import one_axis, planted, planted_table
 
 TILT = "gait.tilt_deg"
 TILTS = [10.0, 15.0, 20.0, 25.0, 30.0, 35.0]
@@ -60,21 +63,43 @@ def test_too_few_levels_or_repeats_give_a_best_level_and_no_interval(
 
 def test_a_set_without_runs_does_not_bend_the_mean_over_the_others() -> None:
     """The tilt 20 degrees was only measured at the quick path step; its higher errors are not the tilt's."""
-    samples = planted(
+    grid = planted(
         {TILT: [15, 20, 25, 30], "gait.path_step_s": [0.1, 0.3]}, 6,
         lambda v, rng: None if v[TILT] == 20 and v["gait.path_step_s"] == 0.1
         else 0.2 + v["gait.path_step_s"] + 0.002 * (v[TILT] - 21.0) ** 2 + 0.002 * rng.standard_normal(),
     )  # fmt: skip
-    one = optimum(samples, TILT)
+    one = optimum(grid, TILT)
     assert one is not None
     assert one.where.value == pytest.approx(21.0, abs=0.5)
 
 
 def test_words_have_no_optimum() -> None:
-    samples = planted({"controller": ["geometric", "gradient"]}, 3, lambda _, rng: float(rng.random()))
-    assert optimum(samples, "controller") is None
+    grid = planted({"controller": ["geometric", "gradient"]}, 3, lambda _, rng: float(rng.random()))
+    assert optimum(grid, "controller") is None
 
 
 def test_nothing_measured_has_no_optimum() -> None:
     assert optimum(one_axis(TILTS, 3, lambda _: math.nan, 0.0, 0), TILT) is None
     assert np.isnan(one_axis(TILTS, 3, lambda _: math.nan, 0.0, 0).value).all()
+
+
+def test_among_scattered_points_a_planted_optimum_lies_inside_its_intervals() -> None:
+    definition = StudyDefinition.from_json({
+        "name": "cube", "design": "latin", "latin": {"sets": 40},
+        "axes": [{"of": TILT, "from": 10, "to": 35}, {"of": "gait.sweep_deg", "from": 15, "to": 40}],
+    })  # fmt: skip
+    inside = 0
+    for seed in range(5):
+        table = planted_table(
+            definition,
+            lambda v, rng: (
+                (0.2 + 0.001 * (v[TILT] - 24.0) ** 2 + 0.001 * (v["gait.sweep_deg"] - 30.0) ** 2)
+                * float(rng.normal(1.0, 0.05))
+            ),
+            seed,
+        )
+        one = joint_optimum(samples(table.rows, table.axes))
+        assert one is not None
+        inside += one.where[TILT].holds(24.0) and one.where["gait.sweep_deg"].holds(30.0)
+        assert one.where[TILT].half_width < 8.0
+    assert inside >= 4
