@@ -18,12 +18,12 @@ TILTS = [20, 25, 30]
 
 
 def definition(repeats: int = 4, **changes: Any) -> StudyDefinition:
-    """Three tilts on the slip plant; in plain Python, by the time law, so that nothing has to be compiled."""
+    """Three tilts on the slip plant; by a controller whose walks are plain Python: nothing has to be compiled."""
     whole: dict[str, Any] = {
         "name": "three tilts",
         "repeats": repeats,
         "duration_s": 0.5,
-        "gait": {"time_law": "wait"},
+        "controller": {"name": "straight"},
         "axes": [{"of": "gait.tilt_deg", "values": TILTS}],
     }
     return StudyDefinition.from_json({**whole, **changes})

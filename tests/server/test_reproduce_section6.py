@@ -122,7 +122,8 @@ def weibull(rng, controller, tilt):
 
 
 def scatter_with(draw):
-    rng, plan = np.random.default_rng(5), study(DISTRIBUTIONS).definition.plan()
+    """Forty runs of each set."""
+    rng, plan = np.random.default_rng(5), study(DISTRIBUTIONS, 40).definition.plan()
     rows = []
     for index in range(plan.total):
         run = plan.run(index)

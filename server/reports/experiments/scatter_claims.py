@@ -72,7 +72,8 @@ def _weibull(found: Scatter) -> Finding:
         if law.weibull is not None
     ]
     truths = [
-        Truth.OPEN if law.weibull is None else of(law.weibull.p_anderson >= REFUSED) for law in laws.values()
+        Truth.OPEN if law.weibull is None else of(law.weibull.p_anderson >= REFUSED / len(laws))
+        for law in laws.values()
     ]
     closest = [min(law.preference, key=law.preference.__getitem__) for law in laws.values() if law.preference]
     others = (
@@ -83,7 +84,8 @@ def _weibull(found: Scatter) -> Finding:
     return finding(
         "6, scatter", "the errors of 100 runs have a semi-bell shape, “more Weibull”",
         f"{'; '.join(texts) or 'too few runs'}{others}", all_of(truths),
-        f"verdict: whether a Weibull law from 0 is refused (Anderson-Darling, p < {REFUSED}); {PLANT}",
+        f"verdict: whether a Weibull law from 0 is refused (Anderson-Darling, p < {REFUSED} over all "
+        f"six, each below {REFUSED / len(laws):.2g}); {PLANT}",
     )  # fmt: skip
 
 

@@ -66,7 +66,7 @@ def _body(content: Content) -> Iterator[str]:
     yield f"<h1>{escape(definition.name)}</h1>"
     yield page.paragraph(asked(definition, found))
     yield page.heading("What was found")
-    yield page.listing(words.sentences(found, content.table))
+    yield page.listing([*_searched(content), *words.sentences(found, content.table)])
     if definition.on == "batch":
         yield page.paragraph(ASSUMED)
     yield page.heading(f"{metric_title(found.samples.metric)} over the axes")
@@ -83,6 +83,16 @@ def _body(content: Content) -> Iterator[str]:
     yield page.heading("How it was computed")
     yield page.listing(METHODS)
     yield _origin(definition)
+
+
+def _searched(content: Content) -> list[str]:
+    """The answer of an auto-tune."""
+    if content.definition.design != "tune":
+        return []
+    from control.studies.tuning import answer
+
+    found = answer(content.definition, {row.index: row for row in content.table.rows})
+    return [] if found is None else [words.of_search(found)]
 
 
 def asked(definition: StudyDefinition, found: Analysis) -> str:

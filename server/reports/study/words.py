@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
@@ -9,6 +10,7 @@ from typing import TYPE_CHECKING
 from control.studies.analysis.comparison import Comparison, Order
 from control.studies.analysis.distribution import REFUSED
 from control.studies.analysis.drift import Drift
+from control.studies.analysis.intervals import Interval
 from control.studies.analysis.optimum import FEWEST_LEVELS, Kind, Optimum
 from control.studies.analysis.sets import as_good_as_best
 from control.studies.analysis.whole import DISTRIBUTED, Analysis
@@ -26,6 +28,8 @@ from server.reports.study.naming import (
 
 if TYPE_CHECKING:
     from control.studies.analysis.joint import JointOptimum
+    from control.studies.tuning.answer import Answer
+    from control.studies.tuning.answer import Interval as Tuned
 
 MATTERS = 0.01
 """p below which an effect is called one: few enough false ones among a dozen terms. A choice."""
@@ -105,9 +109,24 @@ def _joint(found: Analysis, joint: JointOptimum) -> str:
     ]
     metric = short_metric(found.samples.metric)
     return (
-        f"By a smooth surface through all sets, {metric} is smallest at {', '.join(places)}, where {with_interval(joint.value)} "
-        "is expected. An interval as wide as its axis says that the place cannot be told."
+        f"By a smooth surface through all sets, {metric} is smallest at {', '.join(places)}, where "
+        f"{with_interval(joint.value)} is expected. An interval as wide as its axis says that the place cannot be told."
     )
+
+
+def of_search(found: Answer) -> str:
+    """What an auto-tune answers."""
+    metric = short_metric(found.metric)
+    said = f"The search's answer is {point_text(found.values)}: {_tuned(found.expected)} is the {metric} expected there"
+    if found.measured is None:
+        return f"{said}; the runs that are to confirm it are still to come."
+    runs = "run" if found.runs == 1 else "runs"
+    return f"{said}, and {_tuned(found.measured)} was measured in {found.runs} {runs} that had no part in choosing it."
+
+
+def _tuned(one: Tuned) -> str:
+    low, high = (math.nan if edge is None else edge for edge in (one.low, one.high))
+    return with_interval(Interval(one.mean, low, high))
 
 
 def _apart(found: Analysis) -> Iterator[str]:

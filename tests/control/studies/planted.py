@@ -9,6 +9,7 @@ import numpy as np
 
 from control.studies.analysis.samples import ME, Samples, samples
 from control.studies.definition import StudyDefinition
+from control.studies.plan import PlannedRun
 from control.studies.table import StudyRow, StudyTable
 
 Errors = Callable[[Mapping[str, Any], np.random.Generator], float | None]
@@ -18,17 +19,19 @@ Errors = Callable[[Mapping[str, Any], np.random.Generator], float | None]
 def planted_table(definition: StudyDefinition, errors: Errors, seed: int = 0) -> StudyTable:
     plan = definition.plan()
     rng = np.random.default_rng(seed)
-    rows = []
-    for index in range(plan.total):
-        run = plan.run(index)
-        place = (run.index, run.set, run.repeat, run.seed)
-        error = errors(run.values, rng)
-        if error is None:
-            rows.append(StudyRow(*place, "failed", dict(run.values), reason="the robot left the workspace"))
-        else:
-            figures = {ME: error, "mean_error_mm": 10.0 * error, "duration_s": 2.0}
-            rows.append(StudyRow(*place, "finished", dict(run.values), figures))
-    return StudyTable(plan.axes, rows)
+    done: dict[int, StudyRow] = {}
+    while indices := plan.next(done):
+        done |= {index: _row(plan.run(index, done), errors, rng) for index in sorted(indices)}
+    return StudyTable(plan.axes, done.values())
+
+
+def _row(run: PlannedRun, errors: Errors, rng: np.random.Generator) -> StudyRow:
+    error = errors(run.values, rng)
+    place = (run.index, run.set, run.repeat, run.seed)
+    if error is None:
+        return StudyRow(*place, "failed", dict(run.values), reason="the robot left the workspace")
+    figures = {ME: error, "mean_error_mm": 10.0 * error, "duration_s": 2.0}
+    return StudyRow(*place, "finished", dict(run.values), figures)
 
 
 def planted(axes: Mapping[str, list[Any]], repeats: int, errors: Errors, seed: int = 0) -> Samples:

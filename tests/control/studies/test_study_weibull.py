@@ -19,7 +19,7 @@ def drawn(shape: float, scale: float, count: int, seed: int) -> np.ndarray:
     return scale * np.random.default_rng(seed).weibull(shape, count)
 
 
-@settings(max_examples=25)
+@settings(max_examples=25, deadline=None)
 @given(st.floats(0.6, 15.0), st.floats(0.01, 100.0), st.integers(FEWEST, 60), st.integers(0, 1000))
 def test_the_fit_is_the_one_of_the_highest_likelihood(
     shape: float, scale: float, count: int, seed: int

@@ -170,6 +170,15 @@ def test_a_report_is_made_of_every_odd_table(name: str, tmp_path: Path) -> None:
     assert "What was found" in page
 
 
+def test_the_answer_of_a_search_is_said_first(tmp_path: Path) -> None:
+    definition, errors = ODD["a search"]
+    page = write_report(planted_table(definition, errors), definition, tmp_path).read_text()
+    found = page[page.index("What was found") :]
+    assert re.search(
+        r"<li>The search's answer is tilt .*, sweep .*: .* measured in 2 runs", found.replace("&#x27;", "'")
+    )
+
+
 def test_a_study_without_a_single_row_has_a_picture_that_says_so() -> None:
     definition = over((TILT, [20, 25]))
     assert plot_png(StudyTable(definition.axis_names, []), definition).startswith(PNG)
