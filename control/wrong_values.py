@@ -7,6 +7,10 @@ from collections.abc import Callable
 from pydantic import ValidationError
 
 
+LONGEST_GIVEN = 100
+"""Characters that are shown of what was given: enough to find it again."""
+
+
 def _nowhere(_: tuple[str | int, ...]) -> str:
     return ""
 
@@ -19,6 +23,10 @@ def in_words(error: ValidationError, place: Callable[[tuple[str | int, ...]], st
         is_one_value = problem["type"] not in ("missing", "extra_forbidden") and not isinstance(
             problem["input"], dict
         )
-        given = f" (given: {problem['input']!r})" if is_one_value else ""
+        given = f" (given: {_cut(repr(problem['input']))})" if is_one_value else ""
         lines.append(f"  {where}: {problem['msg']}{given}{place(problem['loc'])}")
     return "\n".join(lines)
+
+
+def _cut(text: str) -> str:
+    return text if len(text) <= LONGEST_GIVEN else f"{text[:LONGEST_GIVEN]}…"

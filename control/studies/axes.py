@@ -6,7 +6,7 @@ import math
 import re
 from typing import Annotated, Any
 
-from pydantic import AfterValidator, ConfigDict, Field, StringConstraints, field_validator, model_validator
+from pydantic import AfterValidator, BeforeValidator, ConfigDict, Field, field_validator, model_validator
 
 from control.edge import Edge
 from control.gait_settings import GaitSettings
@@ -19,7 +19,21 @@ ROUNDING = 1e-9
 DIGITS = 12
 """Values of a range are rounded to so many digits, so that 0.1 + 0.1 + 0.1 is 0.3."""
 
-Scalar = bool | int | float | Annotated[str, StringConstraints(max_length=200)]
+LONGEST_NAME = 200
+
+
+def _scalar(value: Any) -> Any:
+    """One complaint, instead of one for each kind that the value is not."""
+    if not isinstance(value, bool | int | float | str):
+        raise ValueError("a value is a number, a name or a switch")
+    if isinstance(value, float) and not math.isfinite(value):
+        raise ValueError("a number has to be finite")
+    if isinstance(value, str) and not len(value) <= LONGEST_NAME:
+        raise ValueError(f"a name has at most {LONGEST_NAME} characters")
+    return value
+
+
+Scalar = Annotated[bool | int | float | str, BeforeValidator(_scalar)]
 """A number in the lab's unit, a name, or a switch."""
 
 NAMED = ("controller", "trajectory", "plant")

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from control import plugins
 from control.metrics import Metrics
+from control.simulation.plants import MissingExtra
 from control.studies.arithmetic import Ground, ground
 from control.studies.batch.outcome import Failed
 from control.studies.plan import PlannedRun
@@ -47,14 +48,17 @@ def chunk_of(runs: tuple[PlannedRun, ...]) -> Chunk:
 
 
 def work(chunk: Chunk) -> Done:
-    """In a worker. Raises `WorkersLost` where this process would not give the results that are wanted."""
+    """In a worker. Raises `WorkersLost` where this process cannot give the results that are wanted."""
     _get_ready(chunk)
     from control.studies.batch import simulate
 
     outcomes, elapsed = [], []
     for run in chunk.runs:
         began = time.perf_counter()
-        [outcome] = simulate([run])
+        try:
+            [outcome] = simulate([run])
+        except MissingExtra as error:
+            raise WorkersLost(f"a worker cannot go on: {error}") from error
         outcomes.append(outcome)
         elapsed.append(time.perf_counter() - began)
     return Done(tuple(outcomes), tuple(elapsed))

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
     from control.studies.definition import StudyDefinition
 
 ORDER_DRAW = 1
-"""Purpose of the random numbers for the order; beyond any index that the scatter of starts takes as its purpose."""
+"""Purpose of the random numbers for the order; the starts' scatter has one of its own."""
 ME = "normalized_mean_error"
 FEWEST_REPEATS = 3
 """An interval of fewer runs says next to nothing (t = 12.7 at two)."""
@@ -88,6 +89,8 @@ def planned_run(
     """values: lab units; None keeps the definition's own. Raises `StudyError` for values that cannot be."""
     settings = settle(definition, values)
     start = start_of(definition.start, settings.selection.build_trajectory())
+    if definition.on == "batch":
+        start = scattered(start, definition.start, definition.seed, index)
     return PlannedRun(
         index=index,
         set=set,
@@ -98,7 +101,7 @@ def planned_run(
         passes=definition.passes,
         duration=definition.duration_s,
         plant=settings.plant,
-        start=scattered(start, definition.start, definition.seed, index),
+        start=start,
         setup=settings.setup,
     )
 
@@ -122,11 +125,24 @@ class FixedPlan:
         """All that is left; with a stop rule for sets, what is left of the first pass that is not complete."""
         if not self._definition.stop.half_width_percent:
             return [index for index in self._order().tolist() if index not in done]
+        return self._left_to_be_known(done)
+
+    def _left_to_be_known(self, done: Done) -> Sequence[int]:
+        """Whether a set is known well enough follows from its repeats before the pass alone. Each row is read once."""
+        sets = len(self.sets)
+        unknown: dict[int, list[float]] = {number: [] for number in range(sets)}
         for repeat in range(self._definition.repeats):
-            wanted = [index for index in self._pass(repeat).tolist() if not self._is_known(index, done)]
-            left = [index for index in wanted if index not in done]
-            if left:
-                return left
+            if any(repeat * sets + number not in done for number in unknown):
+                return [
+                    index
+                    for index in self._pass(repeat).tolist()
+                    if index % sets in unknown and index not in done
+                ]
+            for number, errors in unknown.items():
+                row = done[repeat * sets + number]
+                if row.state == "finished":
+                    errors.append(row.metric(ME))
+            unknown = {number: errors for number, errors in unknown.items() if not self._is_known(errors)}
         return []
 
     def _order(self) -> NDArray[np.int64]:
@@ -143,11 +159,7 @@ class FixedPlan:
         sets = len(self.sets)
         return repeat * sets + generator(self._definition.seed, repeat, ORDER_DRAW).permutation(sets)
 
-    def _is_known(self, index: int, done: Done) -> bool:
-        """Whether the set of this run was known well enough before it, from the earlier repeats alone."""
-        sets = len(self.sets)
-        earlier = (done.get(before) for before in range(index % sets, index, sets))
-        errors = [row.metric(ME) for row in earlier if row is not None and row.state == "finished"]
+    def _is_known(self, errors: Sequence[float]) -> bool:
         return half_width(errors) <= self._definition.stop.half_width_percent / 100.0
 
 
@@ -155,10 +167,15 @@ def half_width(errors: Sequence[float]) -> float:
     """Half of the 95 % interval (Student's t) of the mean, as a share of the mean; inf for too few runs."""
     if len(errors) < FEWEST_REPEATS:
         return math.inf
-    from scipy.stats import t
-
     mean, deviation = float(np.mean(errors)), float(np.std(errors, ddof=1))
     if not (mean > 0.0 and math.isfinite(deviation)):
         return math.inf
-    factor = float(t.ppf(0.5 * (1.0 + CONFIDENCE), len(errors) - 1))
-    return factor * deviation / math.sqrt(len(errors)) / mean
+    return _students(len(errors) - 1) * deviation / math.sqrt(len(errors)) / mean
+
+
+@cache
+def _students(freedom: int) -> float:
+    """Half of the interval of Student's t, in standard errors; asked for by every set in every pass."""
+    from scipy.stats import t
+
+    return float(t.ppf(0.5 * (1.0 + CONFIDENCE), freedom))

@@ -8,7 +8,9 @@ from pydantic import Field, JsonValue, field_validator
 
 from control.edge import Edge, Name
 
-PositiveMM = Annotated[float, Field(gt=0.0, le=1000.0)]
+MOST_TUNED = 1000
+"""Runs that a search learns from: the time of each proposal grows with their cube, to a quarter of a minute here."""
+
 PlaceMM = Annotated[float, Field(ge=-500.0, le=500.0)]
 
 
@@ -22,7 +24,18 @@ class ChoiceSection(Edge):
     @classmethod
     def _without_none(cls, parameters: dict[str, Any]) -> dict[str, Any]:
         """Nothing given is nothing written: TOML has no word for it."""
-        return {name: value for name, value in parameters.items() if value is not None}
+        given = {name: value for name, value in parameters.items() if value is not None}
+        for name, value in given.items():
+            if _holds_none(value):
+                raise ValueError(f"{name} holds a null, which a study's file has no word for; leave it out")
+        return given
+
+
+def _holds_none(value: Any) -> bool:
+    """Whether there is one anywhere inside."""
+    if isinstance(value, dict):
+        return any(map(_holds_none, value.values()))
+    return any(map(_holds_none, value)) if isinstance(value, list) else value is None
 
 
 class SetupSection(Edge):
@@ -101,7 +114,7 @@ class TuneSettings(Edge):
     less improvement than this is expected; 0: never.
     """
 
-    budget: Annotated[int, Field(ge=4, le=10_000)] = 50
+    budget: Annotated[int, Field(ge=4, le=MOST_TUNED)] = 50
     first: Annotated[int, Field(ge=2, le=1000)] = 12
     at_once: Annotated[int, Field(ge=1, le=64)] = 4
     minimise: Minimised = "normalized_mean_error"

@@ -4,7 +4,7 @@ import itertools
 import math
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from control.controllers import Decision, Situation, controllers
@@ -44,6 +44,7 @@ def walker(sweep: float, rate: float, start_heading: float = 0.0) -> KinematicWa
 
 
 @given(st.floats(0.02, 6.0), st.floats(0.1, 9.0), st.floats(0.001, 0.5))
+@settings(deadline=None)
 def test_sweeps_end_exactly_at_the_sweep_angle_whatever_the_tick(
     sweep: float, rate: float, tick: float
 ) -> None:

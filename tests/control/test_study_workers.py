@@ -48,18 +48,30 @@ def test_runs_are_taken_as_they_are_needed_and_no_faster():
     assert len(taken) <= 5 + 2 * MOST
 
 
-def test_memory_does_not_grow_with_the_number_of_runs():
+KEPT = 30_000
+"""Bytes, whatever the number of runs; one that was kept would be a thousand."""
+GARBAGE = 1_000_000
+"""Bytes that Python has not given back yet, whatever the number of runs."""
+
+
+def test_memory_does_not_grow_with_the_number_of_runs(full):
+    few, many = (200, 2000) if full else (50, 500)
     [run] = runs(1, axes=[])
-    peaks = {}
-    for number in (200, 2000):
+
+    def memory(number):
         several = (dataclasses.replace(run, index=index, duration=0.02) for index in range(number))
-        gc.collect()
-        tracemalloc.start()
         for _ in carry_out(several, jobs=1):
             pass
-        peaks[number] = tracemalloc.get_traced_memory()[1]
-        tracemalloc.stop()
-    assert peaks[2000] < 1.2 * peaks[200] + 100_000
+        gc.collect()
+        return tracemalloc.get_traced_memory()
+
+    memory(3)
+    tracemalloc.start()
+    kept_of_few, _ = memory(few)
+    kept_of_many, peak = memory(many)
+    tracemalloc.stop()
+    assert kept_of_many < kept_of_few + KEPT
+    assert peak < GARBAGE
 
 
 def test_a_chunk_is_as_many_runs_as_take_some_tenths_of_a_second():

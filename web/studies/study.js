@@ -52,11 +52,11 @@ function Best({ study: { best, axes } }) {
 
 /** What a search for the best has found. */
 function Answer({ study: { answer, axes } }) {
-  const { values, expected, measured, runs } = answer;
+  const { values, expected, measured, runs, left } = answer;
   const [, words, unit, digits] = metricOf(answer.metric);
   return html`
     <p>The search's answer: ${setText(values, axes)}, where ${words} is expected to be ${withInterval(expected, digits)} ${unit};
-      ${measured ? html` measured there in ${counted(runs, "run")}: <b>${withInterval(measured, digits)}</b>` : " not confirmed yet"}.</p>
+      ${measured ? html` measured there in ${counted(runs, "run")}: <b>${withInterval(measured, digits)}</b>` : left > 0 ? " not confirmed yet" : " no finished run confirms it"}.</p>
   `;
 }
 

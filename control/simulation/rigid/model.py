@@ -66,7 +66,8 @@ def model_xml(parameters: RigidParameters, length: float) -> str:
     """length: between the feet, m.
 
     The magnet is two opposite charges at the feet's distance, so that the field's forces on them add up to the
-    torque m x B exactly, at the attitude of each moment; a charge is the moment over the distance.
+    torque m x B exactly, at the attitude of each moment; a charge is the moment over the distance. MuJoCo must not
+    reset by itself: a body whose motion cannot be computed would go on from the origin.
     """
     mass, length = parameters.mass_mg * MILLIGRAM, length * PER_METRE
     inertia = " ".join(f"{value!r}" for value in bar_inertia(mass, length))
@@ -74,7 +75,9 @@ def model_xml(parameters: RigidParameters, length: float) -> str:
     return f"""
 <mujoco model="pivot walker">
   <option timestep="{SUBSTEP}" integrator="implicitfast" solver="Newton" cone="elliptic" impratio="10"
-          jacobian="dense" gravity="0 0 -{GRAVITY * PER_METRE}"/>
+          jacobian="dense" gravity="0 0 -{GRAVITY * PER_METRE}">
+    <flag autoreset="disable"/>
+  </option>
   <worldbody>
     <geom name="plate" type="plane" size="100 100 1" contype="0" conaffinity="0"/>
     <site name="world"/>

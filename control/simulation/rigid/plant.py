@@ -27,8 +27,12 @@ SINKING = 100
 """Substeps in which a body that was laid down has come to rest: 20 ms, twenty times the contacts' time constant."""
 
 
-class Diverged(RuntimeError):
-    """The body's motion is no number any more."""
+HIGHEST = 3.0
+"""How far the centre of a body that walks never rises, in lengths; upright on one end it has risen by half of one."""
+
+
+class Diverged(ValueError):
+    """The body's motion cannot be computed for these parameters."""
 
 
 class RigidPlant:
@@ -45,6 +49,7 @@ class RigidPlant:
         self.plate = Plate(parameters, seed)
         self.engine = Engine(parameters, length)
         self._balls = balls(parameters, length)
+        self._highest = HIGHEST * length * PER_METRE + CENTRE_HEIGHT
         self._laid: list[float] = []
         self._switches = 0
         self._turned = self._slipped = 0.0
@@ -124,10 +129,10 @@ class RigidPlant:
     def _look(self) -> None:
         """Take the pose from the body's state, and give the feet the friction of where they are."""
         state = self.engine.state.tolist()
-        if not all(map(math.isfinite, state)):
+        if not (all(map(math.isfinite, state)) and 0.0 < state[2] < self._highest):
             raise Diverged(
-                f"the rigid robot's motion is no number any more ({self.parameters}); "
-                "choose a weaker magnet, a heavier body or more damping"
+                f"the rigid robot's motion cannot be computed, or it flew off its plate ({self.parameters}); "
+                "choose a weaker magnet, a heavier body, less adhesion or more damping"
             )
         body = Attitude.of(state)
         self._watch_turn(body)

@@ -7,6 +7,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 from control.metrics import Metrics
+from control.simulation.plants import MissingExtra
 from control.studies.batch.compiled import Prepared, prepared, walk_prepared
 from control.studies.batch.outcome import Failed, RunFailed
 from control.studies.batch.plain import plain_walk
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def simulate(runs: Sequence[PlannedRun]) -> list[Metrics | Failed]:
-    """The figures of each run, in order; never raises for what a run does."""
+    """The figures of each run, in order; never raises for what a run does. Raises `MissingExtra`."""
     return [_figures(run) for run in runs]
 
 
@@ -40,10 +41,13 @@ def _walked(run: PlannedRun) -> Metrics:
 
 @contextmanager
 def _anyones_code() -> Iterator[None]:
-    """Controllers, paths and plants may be anyone's, and raise whatever they like: it is their run that fails."""
+    """Controllers, paths and plants may be anyone's, and raise whatever they like: it is their run that fails.
+
+    What is not installed is no matter of the run, and would be a result for ever.
+    """
     try:
         yield
-    except RunFailed:
+    except (RunFailed, MissingExtra):
         raise
     except Exception as error:
         raise RunFailed(f"the run could not be walked: {type(error).__name__}: {error}") from error

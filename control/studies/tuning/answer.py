@@ -38,7 +38,7 @@ class Answer:
     values: by axis, lab units.  metric: what was minimised.
     expected: the mean of runs there, by the model of all runs before the confirmation.
     measured: by the runs of the confirmation alone, which had no part in choosing the point; None before.
-    runs: finished runs of the confirmation.
+    runs: finished runs of the confirmation.  left: those of it that are still to come.
     """
 
     values: Mapping[str, Any]
@@ -46,6 +46,7 @@ class Answer:
     expected: Interval
     measured: Interval | None
     runs: int
+    left: int
 
     def to_json(self) -> dict[str, Any]:
         return {**asdict(self), "values": dict(self.values), "confirmed": self.measured is not None}
@@ -69,6 +70,7 @@ def answer(definition: StudyDefinition, rows: Mapping[int, StudyRow]) -> Answer 
         expected=_expected(tuner, model, point),
         measured=_measured(measured) if len(measured) else None,
         runs=len(measured),
+        left=definition.tune.confirm - len(last),
     )
 
 

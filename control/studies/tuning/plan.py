@@ -58,30 +58,31 @@ class TunePlan:
 
     def blocks(self, done: Done) -> list[Block]:
         """Up to the first one that is not done."""
-        blocks = [self._block(0, done)]
+        blocks, tried = [self._block([])], list[Trial]()
         while not blocks[-1].confirms and all(index in done for index in blocks[-1].indices):
-            blocks.append(self._block(blocks[-1].indices.stop, done))
+            tried += self._trials(blocks[-1].indices, done)
+            blocks.append(self._block(tried))
         return blocks
 
-    def _block(self, start: int, done: Done) -> Block:
-        """start: index of its first run; all before it are done."""
-        settings = self._settings
+    def _block(self, tried: Sequence[Trial]) -> Block:
+        """tried: all runs before it."""
+        settings, start = self._settings, len(tried)
         left = settings.budget - settings.confirm - start
-        if left <= 0 or self._is_enough(start, done):
+        if left <= 0 or self._is_enough(tried):
             return Block(range(start, start + settings.confirm), confirms=True)
         points = settings.at_once if start else settings.first
         return Block(range(start, start + min(points * self._definition.repeats, left)), confirms=False)
 
-    def _is_enough(self, start: int, done: Done) -> bool:
+    def _is_enough(self, tried: Sequence[Trial]) -> bool:
         """Whether so little improvement is expected that the search ends before its budget."""
         enough = self._settings.enough_percent / PERCENT
-        return start > 0 and enough > 0 and self._tuner.proposal(self._tried(start, done)).gain < enough
+        return len(tried) > 0 and enough > 0 and self._tuner.proposal(tried).gain < enough
 
     def _planned(self, index: int, block: Block, done: Done) -> PlannedRun:
         if index in done:
             row = done[index]
             return planned_run(self._definition, index, row.set, row.repeat, dict(row.values))
-        before, ahead = self._tried(block.indices.start, done), index - block.indices.start
+        before, ahead = self._trials(range(block.indices.start), done), index - block.indices.start
         points = self._points(block, before)[: ahead + 1]
         set_, repeat = _numbered(before, points)
         return planned_run(self._definition, index, set_, repeat, self._tuner.space.values(points[-1]))
@@ -94,8 +95,8 @@ class TunePlan:
         points = self._tuner.proposal(before).points
         return [points[number % len(points)] for number in range(runs)]
 
-    def _tried(self, start: int, done: Done) -> list[Trial]:
-        return trials([done[index] for index in range(start)], self._settings.minimise)
+    def _trials(self, indices: range, done: Done) -> list[Trial]:
+        return trials([done[index] for index in indices], self._settings.minimise)
 
 
 def _numbered(before: Sequence[Trial], points: Sequence[Point]) -> tuple[int, int]:

@@ -23,6 +23,8 @@ class Tuner:
         self.space = space_of(definition)
         self._settings, self._seed = definition.tune, definition.seed
         self._proposals: dict[tuple[Trial, ...], Proposal] = {}
+        self._best: tuple[tuple[Trial, ...], Point] | None = None
+        self._model: tuple[tuple[Trial, ...], ErrorModel] | None = None
 
     def proposal(self, tried: Sequence[Trial]) -> Proposal:
         """The next points to try together."""
@@ -33,6 +35,12 @@ class Tuner:
 
     def best(self, tried: Sequence[Trial]) -> Point:
         """Where the model believes the error to be smallest; the first point as long as no run has finished."""
+        tried = tuple(tried)
+        if self._best is None or self._best[0] != tried:
+            self._best = tried, self._best_of(tried)
+        return self._best[1]
+
+    def _best_of(self, tried: Sequence[Trial]) -> Point:
         model = self.model(tried)
         if model is None:
             return spread_points(self.space, 1, self._seed)[0]
@@ -42,7 +50,11 @@ class Tuner:
         """None as long as no run has finished."""
         if all(trial.error is None for trial in tried):
             return None
-        return ErrorModel(self.space.places([trial.point for trial in tried]), errors(tried))
+        tried = tuple(tried)
+        if self._model is None or self._model[0] != tried:
+            places = self.space.places([trial.point for trial in tried])
+            self._model = tried, ErrorModel(places, errors(tried))
+        return self._model[1]
 
     def _proposal(self, tried: Sequence[Trial]) -> Proposal:
         """Without any run that finished the search goes on evenly, behind the points it had."""

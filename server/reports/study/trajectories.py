@@ -39,8 +39,8 @@ def trajectories(walks: Sequence[Walked], columns: int) -> Figure:
         one.set_xlim(low[0], high[0])
         one.set_ylim(low[1], high[1])
         one.set_aspect("equal")
-        label(one, "x, mm", "y, mm", f"{fill(walk.title, TITLE)}\nME {walk.error:.3g}")
-        one.title.set_fontsize(8)
+        label(one, "x, mm", "y, mm")
+        one.set_title(f"{fill(walk.title, TITLE)}\nME {walk.error:.3g}", fontsize=8, loc="left")
     for spare in axes[len(walks) :]:
         spare.set_axis_off()
     handles, labels = axes[0].get_legend_handles_labels()

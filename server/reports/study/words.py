@@ -118,8 +118,10 @@ def of_search(found: Answer) -> str:
     """What an auto-tune answers."""
     metric = short_metric(found.metric)
     said = f"The search's answer is {point_text(found.values)}: {_tuned(found.expected)} is the {metric} expected there"
-    if found.measured is None:
+    if found.measured is None and found.left:
         return f"{said}; the runs that are to confirm it are still to come."
+    if found.measured is None:
+        return f"{said}; no finished run confirms it."
     runs = "run" if found.runs == 1 else "runs"
     return f"{said}, and {_tuned(found.measured)} was measured in {found.runs} {runs} that had no part in choosing it."
 

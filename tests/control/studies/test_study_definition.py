@@ -108,6 +108,12 @@ def test_whole_numbers_are_the_same_from_a_form_and_from_a_file():
         ({"name": "a", "repeats": 100_000, "axes": [{**TILTS, "values": list(range(10, 40))}]}, "1000000 runs"),
         ({"name": "a", "order": "random", "stop": {"half_width_percent": 5}}, 'needs order = "blocked"'),
         ({"name": "a", "design": "tune", "axes": [TILTS], "tune": {"budget": 10}}, "tune.budget is 10 runs"),
+        ({"name": "a", "axes": [{**TILTS, "values": []}]}, "axes.0.values: Tuple should have at least 1 item"),
+        ({"name": "a", "axes": [{**TILTS, "values": [[1]]}]}, "a number, a name or a switch (given: [1])"),
+        ({"name": "a", "axes": [{**TILTS, "values": [math.inf]}]}, "a number has to be finite (given: inf)"),
+        ({"name": "a", "axes": [{**TILTS, "values": ["x" * 201]}]}, "a name has at most 200 characters"),
+        ({"name": "a", "plant": {"name": "slip", "parameters": {"x": {"y": [None]}}}}, "x holds a null"),
+        ({"name": "a", "design": "tune", "axes": [TILTS], "tune": {"budget": 1001}}, "less than or equal to 1000"),
         ({"name": "a", "surprise": 1}, "surprise: Extra inputs are not permitted"),
     ],
 )  # fmt: skip
@@ -115,6 +121,14 @@ def test_what_is_wrong_is_told_in_words(raw, words):
     with pytest.raises(StudyError) as refused:
         StudyDefinition.from_json(raw)
     assert words in str(refused.value)
+
+
+def test_a_wrong_value_is_complained_of_once_and_shown_in_short():
+    with pytest.raises(StudyError) as refused:
+        StudyDefinition.from_json({"name": "a", "repeats": "x" * 10_000, "sets": [{"gait.tilt_deg": [1]}]})
+    _, *lines = str(refused.value).splitlines()
+    assert sum("sets.0.gait.tilt_deg" in line for line in lines) == 1
+    assert all(len(line) < 250 for line in lines)
 
 
 def test_what_is_no_toml_is_told_in_words():

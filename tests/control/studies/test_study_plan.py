@@ -31,6 +31,16 @@ def row(plan, index, error):
     return StudyRow(index, run.set, run.repeat, run.seed, "finished", run.values, metrics)
 
 
+class Counted(dict):
+    """Rows, and how often one of them was read: a study's rows are on the disk."""
+
+    read = 0
+
+    def __getitem__(self, index):
+        self.read += 1
+        return super().__getitem__(index)
+
+
 def start_of_run(plan, index):
     start = plan.run(index).start
     assert start is not None
@@ -133,6 +143,11 @@ def test_a_start_of_ones_own_is_kept_and_its_scatter_is_drawn_for_each_run():
     assert plan.run(17).start == plan.run(17).start
 
 
+def test_a_rig_walks_back_to_the_start_itself_without_scatter():
+    scatter = {"scatter_mm": 10.0, "scatter_deg": 90.0}
+    assert start_of_run(definition(start=scatter, on="rig").plan(), 5) == start_of_run(definition().plan(), 0)
+
+
 @given(st.integers(0, 2**31 - 1), st.integers(2, 40))
 @settings(max_examples=20, deadline=None)
 def test_a_latin_hypercube_has_one_point_in_each_part_of_each_axis(seed, sets):
@@ -213,6 +228,14 @@ def test_a_set_that_is_known_well_enough_gets_no_more_repeats_whatever_the_timin
     runs = Counter(one.values["gait.tilt_deg"] for one in forward.values())
     assert runs[25] == 3
     assert runs[20] > 3
+
+
+def test_what_is_known_well_enough_is_found_by_reading_each_row_once():
+    plan = definition(repeats=12, stop={"half_width_percent": 5.0}, axes=[TILTS]).plan()
+    done = Counted(finish(plan, _scatter, lambda left: left[0]))
+    done.read = 0
+    assert plan.next(done) == []
+    assert done.read == len(done)
 
 
 def test_the_half_width_is_students():

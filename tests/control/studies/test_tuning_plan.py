@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import random
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -36,6 +37,20 @@ def walked(run: PlannedRun) -> StudyRow:
     """The error of its place, with a scatter that is the run's own."""
     error = error_at(run.values) * float(np.exp(0.1 * np.random.default_rng(run.seed).normal()))
     return StudyRow.finished(run, Metrics(0.01 * error, error, 0.0, 0.0, 0.0, 0.0, 0.0, 0, 0, 0, 0))
+
+
+class Counted(Rows):
+    """How often a row was read: a study's rows are on the disk."""
+
+    read = 0
+
+    def __getitem__(self, index: int) -> StudyRow:
+        self.read += 1
+        return super().__getitem__(index)
+
+
+def not_walked(row: StudyRow) -> StudyRow:
+    return replace(row, state="failed", metrics={})
 
 
 def lost(run: PlannedRun) -> StudyRow:
@@ -75,6 +90,22 @@ def test_the_last_runs_are_all_at_one_point_and_that_is_the_answer(tuned: Rows) 
     assert error_at(found.values) < 0.2 * 1.1
 
 
+def test_an_answer_says_how_many_runs_are_still_to_confirm_it(tuned: Rows) -> None:
+    for kept, left in ((12, 5), (27, 3), (30, 0)):
+        found = answer(definition(), {index: tuned[index] for index in range(kept)})
+        assert found is not None
+        assert (found.left, found.runs) == (left, 5 - left)
+    unconfirmed = answer(definition(), tuned | {index: not_walked(tuned[index]) for index in range(25, 30)})
+    assert unconfirmed is not None
+    assert (unconfirmed.measured, unconfirmed.left) == (None, 0)
+
+
+def test_what_is_enough_is_found_by_reading_each_row_once(tuned: Rows) -> None:
+    rows = Counted(tuned)
+    definition(enough_percent=1e-9).plan().next(rows)
+    assert rows.read <= len(rows)
+
+
 def test_the_interval_of_the_answer_holds_what_is_true_of_its_point(tuned: Rows) -> None:
     found = answer(definition(), tuned)
     assert found is not None
@@ -85,8 +116,8 @@ def test_the_interval_of_the_answer_holds_what_is_true_of_its_point(tuned: Rows)
         assert interval.low < error_at(found.values) * np.exp(0.1**2 / 2) < interval.high
 
 
-def test_a_tuning_that_was_interrupted_anywhere_ends_as_the_one_that_was_not(tuned: Rows) -> None:
-    for kept in (0, 5, 8, 14, 26):
+def test_a_tuning_that_was_interrupted_anywhere_ends_as_the_one_that_was_not(tuned: Rows, full: bool) -> None:
+    for kept in (0, 5, 8, 14, 20, 26) if full else (5, 14, 26):
         part = {index: tuned[index] for index in range(kept)}
         assert table(carried_out(definition(), done=part)) == table(tuned)
 

@@ -3,6 +3,7 @@
 import csv
 import re
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -16,9 +17,10 @@ from control.studies.table import StudyRow, StudyTable
 from server.reports.study.plot import plot_png
 from server.reports.study.printed import PRINTED
 from server.reports.study.report import write_report
-from server.reports.study.walks import WalkedAgain
+from server.reports.study.walks import Recorded, WalkedAgain
 from server.reports.study.words import sentences
 from tests.control.studies.planted import planted_table
+from tests.server.recorded_walk import record_walk
 
 TILT, SWEEP, STEP = "gait.tilt_deg", "gait.sweep_deg", "gait.path_step_s"
 LENGTH = 0.010
@@ -120,6 +122,17 @@ def test_a_run_walked_once_more_for_its_picture_is_the_run_of_the_table() -> Non
     assert error.mean() / LENGTH == pytest.approx(row.metric("normalized_mean_error"), rel=0.02)
 
 
+def test_a_rig_s_path_comes_from_its_recording_and_a_lost_one_is_left_out(tmp_path: Path) -> None:
+    walked = record_walk(tmp_path, "a-walk", 1.5)
+    row = StudyRow(0, 0, 0, 1, "finished", {}, {"normalized_mean_error": 0.2}, run_id="a-walk")
+    source = Recorded(walked.path.parent)
+    walk = source(row, "one")
+    assert walk is not None
+    assert np.hypot(*(walk.centre[0] - walk.reference[0])) < LENGTH
+    assert len(walk.centre) == len(walk.reference) > 60
+    assert source(replace(row, run_id="lost"), "one") is None
+
+
 def nothing(_values: Any, _rng: np.random.Generator) -> None:
     return None
 
@@ -171,12 +184,16 @@ def test_a_report_is_made_of_every_odd_table(name: str, tmp_path: Path) -> None:
 
 
 def test_the_answer_of_a_search_is_said_first(tmp_path: Path) -> None:
-    definition, errors = ODD["a search"]
-    page = write_report(planted_table(definition, errors), definition, tmp_path).read_text()
-    found = page[page.index("What was found") :]
-    assert re.search(
-        r"<li>The search's answer is tilt .*, sweep .*: .* measured in 2 runs", found.replace("&#x27;", "'")
+    definition = defined(
+        "search", design="tune", tune={"budget": 14, "first": 6, "at_once": 4, "confirm": 2},
+        axes=[{"of": TILT, "from": 10, "to": 35}, {"of": SWEEP, "from": 15, "to": 40}],
+    )  # fmt: skip
+    page = (
+        write_report(planted_table(definition, bowl), definition, tmp_path).read_text().replace("&#x27;", "'")
     )
+    found = page[page.index("What was found") :]
+    assert re.search(r"<li>The search's answer is tilt .*, sweep .*: .* measured in [12] runs?", found)
+    assert (tmp_path / "surface.png").read_bytes().startswith(PNG)
 
 
 def test_a_study_without_a_single_row_has_a_picture_that_says_so() -> None:
