@@ -6,7 +6,6 @@ from collections.abc import Callable
 
 from pydantic import ValidationError
 
-
 LONGEST_GIVEN = 100
 """Characters that are shown of what was given: enough to find it again."""
 

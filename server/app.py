@@ -56,6 +56,7 @@ from server.scene.feed import SceneFeed
 from server.scene.live import LiveView
 from server.scene.routes import add_scene_routes
 from server.studies.desk import StudyDesk
+from server.studies.learning import Learning
 from server.upkeep import Upkeep
 
 if TYPE_CHECKING:
@@ -133,6 +134,7 @@ def create_app(
     app.state.retracks = RetrackDesk()
     app.state.studies = StudyDesk(rig, archive)
     app.state.study_json = StudyJson(app.state.studies)
+    app.state.learning = Learning(app.state.studies)
     app.add_middleware(Door, hosts=hosts)
     problems.install(app)
     add_routes(app)
@@ -164,6 +166,7 @@ async def lifespan(app: FastAPI) -> AsyncIterator[None]:
             try:
                 await app.state.calibration_runs.stop()
                 await app.state.retracks.stop()
+                await app.state.learning.close()
                 if changes is not None:
                     await changes.stop()
                 end_streams(app)

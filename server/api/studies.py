@@ -26,6 +26,7 @@ from server.studies.child import ChildFailed
 from server.studies.desk import StudyDesk
 from server.studies.duration import wall_time
 from server.studies.errors import NoSuchStudy, StudyBusy, StudyStoreError
+from server.studies.learning import Learning
 from server.studies.progress import measure_of
 from server.studies.study import RESULTS, Study
 
@@ -47,6 +48,13 @@ async def the_json(request: Request) -> StudyJson:
 
 TheDesk = Annotated[StudyDesk, Depends(the_desk)]
 TheJson = Annotated[StudyJson, Depends(the_json)]
+
+
+async def the_learning(request: Request) -> Learning:
+    return request.app.state.learning
+
+
+TheLearning = Annotated[Learning, Depends(the_learning)]
 
 
 async def blocking(work: Callable[..., T], *arguments: Any) -> T:
@@ -149,10 +157,16 @@ async def list_studies(shown: TheJson) -> dict[str, Any]:
 
 
 @router.get("/studies/{study_id}")
-async def one(study: TheStudy, shown: TheJson, metric: Annotated[Metric, Query()] = None) -> dict[str, Any]:
-    """With the mean of each set so far and its 95 % interval, of ME or of another metric."""
+async def one(
+    study: TheStudy, shown: TheJson, learning: TheLearning, metric: Annotated[Metric, Query()] = None
+) -> dict[str, Any]:
+    """With the mean of each set so far and its 95 % interval, of ME or of another metric.
+
+    answer, surface: of a search for the best, which may be some seconds old while it goes on; null for other designs.
+    """
     wanted = metric_of(metric, measure_of(study.definition))
-    return await blocking(shown.whole, study, wanted)
+    whole = await blocking(shown.whole, study, wanted)
+    return {**whole, **await learning.of(study, whole["rows"])}
 
 
 @router.post("/studies/{study_id}/stop")
@@ -175,12 +189,13 @@ async def resume(study: TheStudy, desk: TheDesk, shown: TheJson, body: Begin | N
 
 
 @router.delete("/studies/{study_id}", status_code=204)
-async def delete(study: TheStudy, desk: TheDesk, shown: TheJson) -> Response:
+async def delete(study: TheStudy, desk: TheDesk, shown: TheJson, learning: TheLearning) -> Response:
     """Its table and report; its runs stay in the catalogue. One that goes on is refused."""
     if desk.work_on(study.id) is not None:
         raise Rejected(Problem(409, "Busy", "The study goes on; stop it first."))
     await blocking(desk.store.delete, study.id)
     shown.forget(study.id)
+    learning.forget(study.id)
     desk.tell_of("deleted", study)
     return Response(status_code=204)
 

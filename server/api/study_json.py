@@ -35,8 +35,6 @@ class StudyJson:
         self._desk = desk
         self._one_at_a_time = threading.Lock()
         self._digests: dict[str, Digest] = {}
-        self._learned: dict[str, tuple[int, dict[str, Any]]] = {}
-        """How many rows there were then, and what was learned of them."""
 
     def digest(self, study: Study) -> Digest:
         """Up to date."""
@@ -48,7 +46,6 @@ class StudyJson:
     def forget(self, id: str) -> None:
         with self._one_at_a_time:
             self._digests.pop(id, None)
-            self._learned.pop(id, None)
 
     def listed(self) -> list[dict[str, Any]]:
         """All studies, newest first."""
@@ -84,20 +81,7 @@ class StudyJson:
             "rows": digest.done,
             "axes": axes_json(study.definition),
             "sets": [set_json(*each, metric) for each in _sets(study.definition, digest)],
-            **self._tuned(study, digest.done),
         }
-
-    def _tuned(self, study: Study, done: int) -> dict[str, Any]:
-        """What a search for the best has learned; worked out when there are new rows, since that takes a moment."""
-        if study.definition.design != "tune":
-            return NOT_TUNED
-        kept = self._learned.get(study.id)
-        if kept is None or kept[0] != done:
-            kept = self._learned[study.id] = done, _learned(study)
-        return kept[1]
-
-
-NOT_TUNED: dict[str, Any] = {"answer": None, "surface": None}
 
 
 def _current(work: Work | None, state: str) -> str:
@@ -183,14 +167,3 @@ def _words(definition: StudyDefinition, so_far: SetSoFar) -> str:
         )
         parts.append(f"{of.title.lower()} {shown}{unit}")
     return ", ".join(parts)
-
-
-def _learned(study: Study) -> dict[str, Any]:
-    from control.studies.tuning import answer, learned_surface
-
-    rows = {row.index: row for row in study.rows()}
-    found, learned = answer(study.definition, rows), learned_surface(study.definition, rows)
-    return {
-        "answer": None if found is None else found.to_json(),
-        "surface": None if learned is None else learned.to_json(),
-    }

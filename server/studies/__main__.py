@@ -2,7 +2,8 @@
 
 carry-out: all that is left of a batch, by so many processes (0: one a core); progress goes to stdout, one
 JSON object a line.
-report: its report into the study's folder.  plot: its figure, PNG, to stdout.
+report: its report into the study's folder.  plot: its figure, PNG, to stdout.  learned: what a search for the best
+has learned, JSON, to stdout.
 A process of its own, since it takes seconds to hours of Python and the control loop must not share its interpreter
 with that. It ends with the server: its stdin does. Exit status: 0 done, 3 impossible, with the reason on stderr.
 """
@@ -75,7 +76,7 @@ def _do(verb: str, jobs: int, data: Path, id: str) -> None:
         if verb == "carry-out":
             _carry_out(study, jobs)
         else:
-            {"report": _report, "plot": _plot}[verb](study)
+            {"report": _report, "plot": _plot, "learned": _learned}[verb](study)
 
 
 def _carry_out(study: Study, jobs: int) -> None:
@@ -106,6 +107,18 @@ def _plot(study: Study) -> None:
 
     sys.stdout.buffer.write(plot_png(study.table(), study.definition))
     sys.stdout.buffer.flush()
+
+
+def _learned(study: Study) -> None:
+    from control.studies.tuning import answer, learned_surface
+
+    rows = {row.index: row for row in study.rows()}
+    found, learned = answer(study.definition, rows), learned_surface(study.definition, rows)
+    shown = {
+        "answer": None if found is None else found.to_json(),
+        "surface": None if learned is None else learned.to_json(),
+    }
+    print(json.dumps(shown), flush=True)
 
 
 class Telling:

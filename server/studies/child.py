@@ -17,7 +17,7 @@ from server.exports.formats import IMPOSSIBLE
 
 log = logging.getLogger(__name__)
 
-Verb = Literal["carry-out", "report", "plot"]
+Verb = Literal["carry-out", "report", "plot", "learned"]
 PROGRAM = (sys.executable, "-P", "-m", "server.studies")
 """-P: the folder that somebody works in may have a `server` of its own, which must not be taken for this one."""
 LONGEST_LINE = 1 << 20

@@ -215,7 +215,7 @@ class StudyDesk:
     # Figures and reports -------------------------------------------------------------------------
 
     async def drawn(self, verb: Verb, study: Study) -> bytes:
-        """The figure's bytes, or of a report nothing: it is in the study's folder then. Raises `ChildFailed`."""
+        """What the child writes; of a report nothing: it is in the study's folder then. Raises `ChildFailed`."""
         async with self._seats:
             child = await Child.started(verb, self._data, study.id)
             return await child.output()

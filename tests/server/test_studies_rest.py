@@ -107,6 +107,7 @@ async def test_a_batch_is_watched_to_its_end_and_taken_away(api, at, full):
     assert all(each["low"] <= each["mean"] <= each["high"] for each in whole["sets"])
     assert whole["best"]["mean"] == min(each["mean"] for each in whole["sets"])
     assert whole["best"]["words"].startswith("sweep ")
+    assert (whole["answer"], whole["surface"]) == (None, None)
     in_mm = (await api.get(f"/studies/{study['id']}?metric=mean_error_mm")).json()["sets"]
     assert [each["mean"] for each in in_mm] == pytest.approx([10 * each["mean"] for each in whole["sets"]])
     assert (await api.get(f"/studies/{study['id']}?metric=beauty")).status_code == 422
@@ -114,6 +115,25 @@ async def test_a_batch_is_watched_to_its_end_and_taken_away(api, at, full):
         figure = await api.get(f"/studies/{study['id']}/plot.png", timeout=DONE_WITHIN)
         assert figure.content.startswith(b"\x89PNG")
     await taken_away(api, study["id"])
+
+
+async def test_what_a_search_has_learned_is_told_by_a_process_of_its_own(api, at):
+    definition = {
+        **SHORT,
+        "design": "tune",
+        "repeats": 1,
+        "axes": [{"of": "gait.sweep_deg", "from": 10, "to": 40}],
+        "tune": {"budget": 6, "first": 4, "at_once": 1, "confirm": 1},
+    }
+    async with at.socket("/api/v1/telemetry?rate_Hz=1") as telemetry:
+        study = await made(api, definition=definition)
+        await heard(telemetry, study["id"])
+    whole = (await api.get(f"/studies/{study['id']}", timeout=DONE_WITHIN)).json()
+    assert (whole["rows"], whole["answer"]["runs"], whole["answer"]["left"]) == (6, 1, 0)
+    assert whole["surface"]["axes"] == ["gait.sweep_deg"]
+    assert len(whole["surface"]["mean"]) == len(whole["surface"]["marks"][0])
+    assert [sample["values"] for sample in whole["surface"]["samples"]][-1] == whole["answer"]["values"]
+    assert (await api.delete(f"/studies/{study['id']}")).status_code == 204
 
 
 async def heard(telemetry, id):

@@ -1,6 +1,7 @@
 """The open-loop survey of pivot switches: it finds what the plants were given, and what Lambda explains."""
 
 import math
+from itertools import islice
 
 import pytest
 
@@ -14,7 +15,7 @@ SWEEP = math.radians(30.0)
 EVEN = RigidParameters(friction_scatter_percent=0.0)
 
 
-def figures_of(choice: PlantChoice, tilt_deg: float, ramp: float = 0.05, switches: int = 3) -> SwitchFigures:
+def figures_of(choice: PlantChoice, tilt_deg: float, ramp: float = 0.05, switches: int = 2) -> SwitchFigures:
     return survey(choice, LENGTH, Stride(math.radians(tilt_deg), SWEEP, ramp=ramp), switches, (1,))
 
 
@@ -40,7 +41,7 @@ def test_the_survey_of_the_slip_plant_gives_its_table_back(row) -> None:
 
 def test_a_scattering_plant_scatters_in_the_survey() -> None:
     row = SLIP_TABLE.rows[4]
-    found = survey(PlantChoice("slip"), LENGTH, Stride(row.tilt, SWEEP), 40, (1, 2, 3))
+    found = survey(PlantChoice("slip"), LENGTH, Stride(row.tilt, SWEEP), 25, (1, 2, 3))
     assert found.out.deviation == pytest.approx(row.out_sd, rel=0.25)
     assert found.play.deviation == pytest.approx(row.play_sd, rel=0.25)
 
@@ -62,18 +63,22 @@ def test_a_strong_magnet_hops_outward_at_a_quick_switch_and_hardly_at_a_slow_one
     assert abs(gentle.hop.mean) < 0.2 * high.hop.mean
 
 
-def test_the_study_of_the_tilt_visits_every_point_once_and_knows_its_lift() -> None:
+def test_the_study_of_the_tilt_goes_from_lambda_to_lambda_and_knows_its_lift() -> None:
     tilts = (math.radians(20.0), math.radians(30.0))
-    points = list(tilt_study((2.6, 7.0), (0.05,), tilts, switches=1, seeds=(1,)))
-    assert [(point.ratio, point.tilt) for point in points] == [(r, t) for r in (2.6, 7.0) for t in tilts]
+    points = list(islice(tilt_study((2.6, 7.0), (0.05,), tilts, switches=1, seeds=(1,)), 3))
+    assert [(point.ratio, point.tilt) for point in points] == [
+        (2.6, tilts[0]),
+        (2.6, tilts[1]),
+        (7.0, tilts[0]),
+    ]
     assert all(isinstance(point, TiltPoint) for point in points)
     assert points[0].lift == pytest.approx(2.6 * math.sin(tilts[0]))
-    assert points[3].figures.tilt.mean > points[1].figures.tilt.mean
+    assert points[2].figures.tilt.mean > points[0].figures.tilt.mean
 
 
 def test_at_the_tables_lambda_the_rigid_robots_play_is_the_tables(full) -> None:
     """The play follows from friction and torque alone; nothing is fitted. The displacements are another matter."""
-    rows = SLIP_TABLE.rows if full else SLIP_TABLE.rows[::3]
-    for row in beside_the_table(rows, 10 if full else 3, (1,)):
+    rows = SLIP_TABLE.rows if full else SLIP_TABLE.rows[::4]
+    for row in beside_the_table(rows, 10 if full else 2, (1,)):
         # Within two of the table's deviations.
         assert row.rigid.play.mean == pytest.approx(row.table.play, abs=2.0 * row.table.play_sd)

@@ -21,6 +21,8 @@ from control.simulation.plants import (
 )
 from control.simulation.rigid.parameters import GRAVITY, RigidParameters
 from control.simulation.slip import NO_SLIP, SLIP_TABLE
+from control.studies.definition import StudyDefinition
+from control.studies.workers import WorkersLost, carry_out
 from server.cli import app
 from server.settings import RigFile
 
@@ -116,7 +118,23 @@ def test_without_mujoco_the_rigid_plant_says_which_extra_to_install() -> None:
 
 @pytest.mark.usefixtures("without_mujoco")
 def test_a_run_with_the_rigid_plant_ends_with_the_same_words(tmp_path) -> None:
-    answer = CliRunner().invoke(app, ["run", "--plant", "rigid", "--json", "--data", str(tmp_path)])
+    arguments = ["run", "--plant", "rigid", "--json", "--no-record", "--data", str(tmp_path)]
+    answer = CliRunner().invoke(app, arguments)
     assert answer.exit_code == 2
     assert "extra `physics`" in answer.stderr
     assert answer.stdout == ""
+
+
+@pytest.mark.usefixtures("without_mujoco")
+def test_a_study_that_goes_on_without_mujoco_makes_no_failed_runs_of_it() -> None:
+    """A failed run is a result and is never done again; what is not installed can be installed."""
+    definition = StudyDefinition.from_json(
+        {
+            "name": "Without",
+            "trajectory": {"name": "circle"},
+            "plant": {"name": "rigid"},
+            "axes": [{"of": "gait.tilt_deg", "values": [25]}],
+        }
+    )
+    with pytest.raises(WorkersLost, match="extra `physics`"):
+        list(carry_out([definition.plan().run(0, {})], jobs=1))

@@ -15,7 +15,9 @@ from control.snapshot import Vector
 
 _mujoco: Any = mujoco
 """The bindings are compiled and bring no types."""
-_mujoco.set_mju_user_warning(logging.getLogger(__name__).warning)  # else it writes files where the program was started
+_mujoco.set_mju_user_warning(
+    logging.getLogger(__name__).warning
+)  # else it writes files where the program was started
 _FIELDS = 6
 """Controls that are a field: three for each of the magnet's charges; the others are the feet's adhesion."""
 

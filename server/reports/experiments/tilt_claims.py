@@ -39,7 +39,7 @@ NO_EFFECT = 0.02
 ASSUMED = {
     "slip": "where the minimum lies follows from the assumed robot's slip table (Λ = 3.2): it is no prediction",
     "noslip": "this plant knows neither sticking nor slipping",
-    "rigid": "a property of the assumed robot (its Λ); three runs of a third of an eight, at Δt = 0.1 s",
+    "rigid": "a property of the assumed robot (its Λ); the first 40 s of an eight, at Δt = 0.1 s",
 }
 SWITCHED = SWITCHES * len(SEEDS)
 """Pivot switches behind each figure of the rigid plant's survey."""
