@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from typing import Protocol
 
 from control.safety import Refused
@@ -20,10 +21,19 @@ class Occupant(Protocol):
         ...
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Stop:
+    """One of its own each time. is_end: the program ends."""
+
+    reason: str
+    is_end: bool
+
+
 class Occupation:
-    """At most one occupant."""
+    """At most one occupant. latest_stop: for who was not there yet when it came."""
 
     def __init__(self) -> None:
+        self.latest_stop: Stop | None = None
         self._occupant: Occupant | None = None
 
     @contextmanager
@@ -43,5 +53,6 @@ class Occupation:
 
     def stop(self, reason: str, *, is_end: bool = False) -> None:
         """Tell the occupant, if there is one."""
+        self.latest_stop = Stop(reason, is_end)
         if self._occupant is not None:
             self._occupant.stop(reason, is_end=is_end)

@@ -79,17 +79,18 @@ class Rig(RigLife):
 
     async def start_run(self, request: RunRequest) -> Run:
         self.occupation.require_none()
-        return await self.begin_run(request)
+        return await self.begin_run(request, self.occupation.require_none)
 
-    async def begin_run(self, request: RunRequest) -> Run:
-        """`start_run` for who has the rig to itself."""
+    async def begin_run(self, request: RunRequest, permit: Callable[[], None]) -> Run:
+        """`start_run` for who has the rig to itself. permit: asked on the rig's thread; raises where it must not be."""
         id = new_id()
         await asyncio.to_thread(self.check_recording)
-        await self._ask(lambda: self._start(id, request))
+        await self._ask(lambda: self._start(id, request, permit))
         return self.runs.of(id)
 
-    def _start(self, id: str, request: RunRequest) -> None:
+    def _start(self, id: str, request: RunRequest, permit: Callable[[], None]) -> None:
         """On the rig's thread: the run is listed from the instant at which it may also end."""
+        permit()
         self._loop.start(id, request)
         run = Run(id, request, RunState.RUNNING, datetime.now(UTC))
         self._recording.begin(self._machine, run)

@@ -23,9 +23,9 @@ MARKS = "osD^vP<>"
 NOTES = (
     "Where the free end lifts only above Λ sin α = 1 (dotted), a weaker field leaves both ends on the plate, and "
     "friction holds the body back: it sticks, as play in its heading.",
-    "A strong magnet makes the new pivot hop outward at the switch, the more the higher the tilt; a ramp three times "
-    "as long nearly removes that for the strongest magnets, but not where the ends are torn off against their "
-    "adhesion (Λ = 2.6 and 3.2).",
+    "A strong magnet makes the new pivot hop outward at the switch, up to 30° the more the higher the tilt; there a "
+    "ramp three times as long nearly removes that, but not where a weaker one tears the ends off against their "
+    "adhesion (Λ = 2.6).",
     "So there can be a best tilt in between, and its place follows from Λ: it is a property of the assumed robot "
     "(79 mg, 0.3 mN of adhesion at each end, friction 0.4 ± 20 % in patches of 1 mm, feet of two balls 2 mm apart) "
     "and predicts nothing of the paper's. The slip table was fitted at Λ = 3.2; this plant's default is Λ = 2.6.",

@@ -90,6 +90,32 @@ def test_a_batch_is_made_by_the_form_watched_to_its_end_and_reported(
     assert served.ask("/studies")["studies"] == []
 
 
+def test_a_search_shows_all_that_it_tried_before_what_it_has_learned_and_its_answer(
+    served: ServedRig, visit: Visit
+) -> None:
+    ranges = {"gait.sweep_deg": (10, 40), "gait.tilt_deg": (10, 35), "controller.gain": (1, 8)}
+    definition = {
+        "name": "three ranges", "design": "tune", "duration_s": 3.0, "gait": {"time_law": "wait"},
+        "axes": [{"of": name, "from": low, "to": high} for name, (low, high) in ranges.items()],
+        "tune": {"budget": 8, "first": 5, "at_once": 2, "confirm": 1},
+    }  # fmt: skip
+    made = served.send("POST", "/studies", {"definition": definition})
+    page = visit.page
+    page.get_by_role("button", name="three ranges").first.click()
+    study = page.get_by_role("article", name="three ranges")
+    expect(study.get_by_text("8 of 8 runs")).to_be_visible(timeout=COMPUTED_WITHIN * 1e3)
+    expect(study.get_by_text("The search's answer")).to_contain_text(
+        "measured there in 1 run", timeout=COMPUTED_WITHIN * 1e3
+    )
+    expect(study.locator(".dot")).to_have_count(len(served.ask(f"/studies/{made['id']}")["sets"]))
+    expect(study.locator(".surface rect")).to_have_count(41 * 41)
+    picture, learned = (study.locator(one).bounding_box() for one in (".scatter svg", ".surface"))
+    assert picture is not None
+    assert learned is not None
+    assert picture["x"] + 50 <= learned["x"]
+    served.send("DELETE", f"/studies/{made['id']}")
+
+
 def wait_for_the_robot(served: ServedRig) -> None:
     """The page's selection, which a new study begins with; by a time law for which nobody waits for a compiler."""
     selection = served.ask("/selection")

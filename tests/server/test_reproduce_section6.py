@@ -199,6 +199,13 @@ def test_why_there_is_a_minimum_is_asked_of_the_rigid_plants_switches():
     sticks = [point(10, 0.2, 1e-5), point(25, 0.02, 1e-5), point(35, 0.02, 3e-4)]
     assert tilt_claims.cause(sticks).verdict is YES
     assert tilt_claims.cause([replace(one, figures=sticks[1].figures) for one in sticks]).verdict is OPEN
+    found = tilt_claims.by_magnet([*sticks, *(replace(one, ratio=7.0) for one in sticks)])
+    assert (
+        "Λ = 2.6 the free end lifts from 23° on, play 11.5° to 1.1°, slip of a pivot 0.01 mm to 0.30 mm"
+        in found.ours
+    )
+    assert "Λ = 7 the free end lifts from 8°" in found.ours
+    assert found.verdict is OPEN
 
 
 def test_the_papers_coils_do_not_make_a_uniform_field_and_large_ones_do():

@@ -15,7 +15,7 @@ SWEEP = math.radians(30.0)
 EVEN = RigidParameters(friction_scatter_percent=0.0)
 
 
-def figures_of(choice: PlantChoice, tilt_deg: float, ramp: float = 0.05, switches: int = 2) -> SwitchFigures:
+def figures_of(choice: PlantChoice, tilt_deg: float, ramp: float = 0.05, switches: int = 1) -> SwitchFigures:
     return survey(choice, LENGTH, Stride(math.radians(tilt_deg), SWEEP, ramp=ramp), switches, (1,))
 
 

@@ -32,13 +32,14 @@ def test_a_batch_walks_the_rigid_robot_and_gets_the_same_again() -> None:
 
 
 def test_the_rigid_robot_walks_in_the_complete_rig() -> None:
-    options = "--plant rigid --trajectory circle --duration 4 --no-record --json"
+    options = "--plant rigid --trajectory circle --duration 3 --no-record --json"
     answer = CliRunner().invoke(app, ["run", *options.split()])
     assert answer.exit_code == 0, answer.stderr
     result = json.loads(answer.stdout)
     assert result["state"] == "finished"
     assert result["steps"] >= 1
-    assert result["mean_error_mm"] < 5.0
+    # Its length.
+    assert result["mean_error_mm"] < 10.0
 
 
 def test_the_example_study_of_the_tilt_varies_lambda_and_the_ramp() -> None:

@@ -30,11 +30,14 @@ export function layoutOf(study, view) {
   const across = byName(view.across) ?? byName(first) ?? numbersFirst[0] ?? null;
   const rest = varied.filter((axis) => axis !== across);
   const down = view.down !== view.across && rest.includes(byName(view.down)) ? byName(view.down) : (rest.find(({ name }) => name === second) ?? rest[0] ?? null);
-  const further = rest.filter((axis) => axis !== down && axis.values.length > 1);
+  const further = rest.filter((axis) => axis !== down && axis.values.length > 1 && !isScattered(study, axis));
   const panel = further.find((axis) => axis.values.length <= MOST_PANELS) ?? null;
   const chosen = further.filter((axis) => axis !== panel).map((axis) => ({ axis, value: chosenValue(axis, view.fixed) }));
   return { axes, across, down, panel, chosen };
 }
+
+/** Along a range hardly two sets share a value: they are all shown, wherever they lie on it. */
+const isScattered = ({ axes }, { name }) => axes.find((axis) => axis.name === name).values.length === 0;
 
 const chosenValue = (axis, fixed) => (axis.values.includes(fixed[axis.name]) ? fixed[axis.name] : axis.values[0]);
 

@@ -13,8 +13,8 @@ const RADIUS = 7;
 export function Scatter({ sets, layout, scale, metric, caption, best, surface }) {
   const [place, width] = useWidth();
   const { across, down } = layout;
-  const x = alongAxis(across, [MARGIN.left, width - MARGIN.right]);
-  const y = down ? alongAxis(down, [HEIGHT - MARGIN.bottom, MARGIN.top]) : () => HEIGHT / 2;
+  const x = alongAxis(across, [MARGIN.left, width - MARGIN.right], surface?.marks[0]);
+  const y = down ? alongAxis(down, [HEIGHT - MARGIN.bottom, MARGIN.top], surface?.marks[1]) : () => HEIGHT / 2;
   return html`
     <figure class="scatter" ref=${place}>
       ${caption && html`<figcaption>${caption}</figcaption>`}
@@ -27,13 +27,16 @@ export function Scatter({ sets, layout, scale, metric, caption, best, surface })
   `;
 }
 
-function alongAxis(axis, ends) {
+/** marks: what else has to have its place along it. */
+function alongAxis(axis, ends, marks = []) {
   const { values } = axis;
   if (!isNumeric(axis)) {
     const even = linear([-0.5, values.length - 0.5], ends);
     return Object.assign((value) => even(values.indexOf(value)), { ticks: values });
   }
-  return Object.assign(linear(padded(values[0], values.at(-1)), ends), { ticks: ticksOf(values[0], values.at(-1), 5) });
+  const all = [...values, ...marks];
+  const [low, high] = [Math.min(...all), Math.max(...all)];
+  return Object.assign(linear(padded(low, high), ends), { ticks: ticksOf(low, high, 5) });
 }
 
 function Axes({ x, y, width, across, down }) {

@@ -30,7 +30,7 @@ class Order(StrEnum):
 @dataclass(frozen=True, slots=True)
 class Comparison:
     """one, other: values of the axis.  fixed: values of the other axes.  difference: mean of one less that of other,
-    Welch's interval.  p_welch, p_ranks: Welch's t and Mann and Whitney's test.
+    Welch's interval.  runs that do not scatter leave nothing unsure.  p_welch, p_ranks: Welch's t and Mann and Whitney's test.
     effect: Hedges' g.  below: chance that a run of one has the smaller value, ties half.
     """
 
@@ -86,10 +86,12 @@ def pair(a: Array, b: Array, named: tuple[str, Any, Any, Mapping[str, Any]] = ("
     """Two sets of finished runs, each with at least one. named: axis, one, other, fixed."""
     axis, one, other, fixed = named
     means = float(a.mean()), float(b.mean())
-    scattered = min(len(a), len(b)) >= FEWEST and (np.ptp(a) > 0.0 or np.ptp(b) > 0.0)
+    repeated = min(len(a), len(b)) >= FEWEST
+    scattered = repeated and (np.ptp(a) > 0.0 or np.ptp(b) > 0.0)
+    difference = means[0] - means[1]
     return Comparison(
         axis, one, other, fixed, means,
-        _difference(a, b) if scattered else Interval(means[0] - means[1]),
+        _difference(a, b) if scattered else Interval(difference, *([difference] * 2 if repeated else [])),
         _welch(a, b) if scattered else NAN,
         float(stats.mannwhitneyu(a, b).pvalue) if scattered else NAN,
         _hedges(a, b) if scattered else NAN,

@@ -7,23 +7,21 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy import stats
+from scipy import special, stats
 
 from control.studies.analysis.intervals import LEVEL, NAN, Interval, finite, mean_interval
-from control.studies.analysis.weibull import SEED, WeibullFit, fit, positive
+from control.studies.analysis.weibull import FEWEST, WeibullFit, fit
 from control.studies.analysis.weibull_location import LocatedFit, fit_located
 
 Array = NDArray[np.float64]
-RESAMPLES = 2000
-"""Of the bootstrap for the deviation."""
 REFUSED = 0.05
 """A law is called refused where its test's p is below this."""
 
 
 @dataclass(frozen=True, slots=True)
 class Distribution:
-    """values: the finished runs', ascending.  mean: with Student's interval.  deviation: of single runs, by BCa
-    bootstrap.  weibull, located: None for too few runs.  preference: Akaike's criterion (corrected for few values)
+    """values: the finished runs', ascending.  mean: with Student's interval.  deviation: of single runs, with
+    Bonett's interval.  weibull, located: None for too few runs.  preference: Akaike's criterion (corrected for few values)
     of each law less that of the best one; 0 is best, more than 4 clearly worse.
     """
 
@@ -61,20 +59,19 @@ def _skewness(x: Array) -> float:
 
 
 def _deviation(x: Array) -> Interval:
+    """Bonett, Approximate confidence interval for standard deviation of nonnormal distributions, 2006."""
     if len(x) < 2:
         return Interval(NAN)
-    value = float(np.std(x, ddof=1))
-    if positive(x) is None:
+    count, value = len(x), float(np.std(x, ddof=1))
+    if count < FEWEST or not x[-1] > x[0]:
         return Interval(value)
-    found = stats.bootstrap(
-        (x,), _spread, n_resamples=RESAMPLES, confidence_level=LEVEL, method="BCa",
-        rng=np.random.default_rng((SEED, len(x))),
-    ).confidence_interval  # fmt: skip
-    return Interval(value, float(found.low), float(found.high))
-
-
-def _spread(x: Array, axis: int = -1) -> Array:
-    return np.std(x, ddof=1, axis=axis)
+    middle = float(stats.trim_mean(x, 0.5 / math.sqrt(count - 4)))
+    kurtosis = count * float(np.sum((x - middle) ** 4) / np.sum((x - x.mean()) ** 2) ** 2)
+    quantile = float(special.ndtri(0.5 + 0.5 * LEVEL))
+    few = count / (count - quantile)
+    error = few * math.sqrt((kurtosis - (count - 3) / count) / (count - 1))
+    low, high = (value * math.sqrt(few * math.exp(side * quantile * error)) for side in (-1.0, 1.0))
+    return Interval(value, min(low, value), high)
 
 
 def _preference(x: Array, weibull: WeibullFit | None, located: LocatedFit | None) -> dict[str, float]:

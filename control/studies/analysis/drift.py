@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import stats
+from scipy import special, stats
 
 from control.studies.analysis.intervals import Interval, t_quantile
 from control.studies.analysis.samples import Samples
@@ -19,8 +19,9 @@ NOTICED = 0.01
 
 @dataclass(frozen=True, slots=True)
 class Drift:
-    """slope: change of the metric over the whole study, sets' means taken out, with Student's interval.
-    rank_correlation, p: Spearman's, of what is left with the place in the order.
+    """slope: change of the metric from the first run to the last that finished, sets' means taken out, with Student's
+    interval.  rank_correlation, p: Spearman's, of what is left with the place in the order, tested with the freedom
+    that the sets' means leave.
     """
 
     slope: Interval
@@ -36,8 +37,7 @@ class Drift:
 def drift(samples: Samples, order: Sequence[int]) -> Drift | None:
     """order: indices of the plan as they were carried out. None where too few sets have repeats."""
     position = {index: place for place, index in enumerate(order)}
-    where, left = [], []
-    sets = 0
+    where, left, ends = [], [], []
     for place in range(len(samples.points)):
         chosen = (samples.place == place) & np.isfinite(samples.value)
         chosen &= np.isin(samples.index, list(position))
@@ -46,14 +46,14 @@ def drift(samples: Samples, order: Sequence[int]) -> Drift | None:
             at = np.array([position[int(index)] for index in samples.index[chosen]], dtype=float)
             where.append(at - at.mean())
             left.append(values - values.mean())
-            sets += 1
-    if not left or sum(map(len, left)) - sets < FEWEST:
+            ends += [at.min(), at.max()]
+    if not left or sum(map(len, left)) - len(left) < FEWEST:
         return None
-    return _found(np.concatenate(where), np.concatenate(left), sets, len(order))
+    return _found(np.concatenate(where), np.concatenate(left), len(left), float(np.ptp(ends)))
 
 
-def _found(x: np.ndarray, y: np.ndarray, sets: int, runs: int) -> Drift | None:
-    """x, y: place in the order and metric, each less its set's mean."""
+def _found(x: np.ndarray, y: np.ndarray, sets: int, span: float) -> Drift | None:
+    """x, y: place in the order and metric, each less its set's mean.  span: from the first place to the last."""
     if not (np.ptp(x) > 0.0 and np.ptp(y) > 0.0):
         return None
     spread = float(x @ x)
@@ -61,10 +61,17 @@ def _found(x: np.ndarray, y: np.ndarray, sets: int, runs: int) -> Drift | None:
     freedom = len(y) - sets - 1
     error = np.sqrt(float(np.sum((y - slope * x) ** 2)) / freedom / spread)
     reach = t_quantile(freedom) * float(error)
-    rank, p = (float(one) for one in stats.spearmanr(x, y))  # pyright: ignore[reportArgumentType]
+    rank = float(stats.spearmanr(x, y)[0])  # pyright: ignore[reportArgumentType]
     return Drift(
-        Interval(slope, slope - reach, slope + reach).scaled(max(runs - 1, 1)),
+        Interval(slope, slope - reach, slope + reach).scaled(span),
         rank,
-        p,
+        _chance(rank, freedom),
         len(y),
     )
+
+
+def _chance(correlation: float, freedom: int) -> float:
+    """p of a correlation of no effect. Runs less their set's mean are not free: of two they are one another's mirror."""
+    if abs(correlation) >= 1.0:
+        return 0.0
+    return 2.0 * float(special.stdtr(freedom, -abs(correlation) * np.sqrt(freedom / (1.0 - correlation**2))))

@@ -57,21 +57,30 @@ def mean_interval(values: ArrayLike) -> Interval:
 
 
 def mean_of_means(groups: Sequence[NDArray[np.float64]]) -> Interval:
-    """The mean of the groups' means, each group counting alike; freedom by Welch and Satterthwaite.
-
-    A group without values is left out; where a group has one value only, its scatter and so the interval is unknown.
-    """
+    """The mean of the groups' means, each group counting alike; a group without values is left out."""
     filled = [group for group in groups if len(group)]
     if not filled:
         return NOTHING
-    value = float(np.mean([np.mean(group) for group in filled]))
-    if min(len(group) for group in filled) < 2:
+    value, error, freedom = moments(filled)
+    if not math.isfinite(error):
         return Interval(value)
-    shares = np.array([np.var(group, ddof=1) / len(group) for group in filled])
-    freedoms = np.array([len(group) - 1 for group in filled])
+    reach = t_quantile(freedom) * error
+    return Interval(value, value - reach, value + reach)
+
+
+def moments(groups: Sequence[NDArray[np.float64]]) -> tuple[float, float, float]:
+    """The mean of the means of groups that all have values, its standard error, and the freedom by Welch and
+    Satterthwaite. The error is NaN where a group has one value only, and 0 where no group's values differ.
+    """
+    value = float(np.mean([np.mean(group) for group in groups]))
+    if min(len(group) for group in groups) < 2:
+        return value, NAN, 1.0
+    shares = np.array(
+        [np.var(group, ddof=1) / len(group) if np.ptp(group) > 0.0 else 0.0 for group in groups]
+    )
+    freedoms = np.array([len(group) - 1 for group in groups])
     total = float(np.sum(shares))
     if not total > 0.0:
-        return Interval(value, value, value)
+        return value, 0.0, 1.0
     freedom = total**2 / float(np.sum(shares**2 / freedoms))
-    reach = t_quantile(freedom) * math.sqrt(total) / len(filled)
-    return Interval(value, value - reach, value + reach)
+    return value, math.sqrt(total) / len(groups), freedom

@@ -26,9 +26,9 @@ def basis(codes: Sequence[Codes], counts: Array, terms: Sequence[Term]) -> Array
     return u[:, singular > NO_RANK * singular[0]]
 
 
-def explained(columns: Array, counts: Array, means: Array) -> Array:
-    """Sum of squares (draws,) of the part that a basis explains. means: (sets, draws)."""
-    return np.sum((columns.T @ (np.sqrt(counts)[:, None] * means)) ** 2, axis=0)
+def explained(columns: Array, counts: Array, means: Array) -> float:
+    """Sum of squares of the part that a basis explains. means: (sets,)."""
+    return float(np.sum((columns.T @ (np.sqrt(counts) * means)) ** 2))
 
 
 def levels(codes: Sequence[Codes], term: Term) -> Codes:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
@@ -11,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from control.studies.analysis.intervals import LEVEL, Interval
+from control.studies.analysis.intervals import LEVEL, Interval, moments
 from control.studies.analysis.samples import Samples
 from control.studies.analysis.spline import smoother
 
@@ -77,7 +76,7 @@ class _Levels:
 
 
 def _levels(samples: Samples, axis: str) -> tuple[Array, Array, Array, Array]:
-    """Level, mean, standard error (0: unknown) and its degrees of freedom, for each level with finished runs.
+    """Level, mean, standard error (NaN: unknown) and its degrees of freedom, for each level with finished runs.
 
     Only the other axes' points that were measured at every level take part: a missing set would shift a mean. Where
     there is no such point, all take part.
@@ -88,7 +87,10 @@ def _levels(samples: Samples, axis: str) -> tuple[Array, Array, Array, Array]:
             measured.setdefault(level, {})[point] = group
     everywhere = set[Any].intersection(*(set(found) for found in measured.values())) if measured else set()
     rows = [
-        (float(level), *_mean([found[point] for point in sorted(everywhere & set(found) or found, key=str)]))
+        (
+            float(level),
+            *moments([found[point] for point in sorted(everywhere & set(found) or found, key=str)]),
+        )
         for level, found in sorted(measured.items())
     ]
     return tuple(np.array(rows, dtype=float).reshape(-1, 4).T)  # pyright: ignore[reportReturnType]
@@ -98,18 +100,6 @@ def _rest(samples: Samples, axis: str) -> list[tuple[Any, ...]]:
     """Each set's values of the other axes."""
     at = samples.axes.index(axis)
     return [point[:at] + point[at + 1 :] for point in samples.points]
-
-
-def _mean(groups: Sequence[Array]) -> tuple[float, float, float]:
-    value = float(np.mean([np.mean(group) for group in groups]))
-    if min(len(group) for group in groups) < 2:
-        return value, 0.0, 1.0
-    shares = np.array([np.var(group, ddof=1) / len(group) for group in groups])
-    total = float(np.sum(shares))
-    if not total > 0.0:
-        return value, 0.0, 1.0
-    freedom = total**2 / float(np.sum(shares**2 / np.array([len(group) - 1 for group in groups])))
-    return value, math.sqrt(total) / len(groups), freedom
 
 
 def _found(levels: _Levels) -> Optimum:
@@ -139,7 +129,7 @@ def _found(levels: _Levels) -> Optimum:
 def _intervals(levels: _Levels, x: Array, line: Array, operator: Array) -> tuple[Interval, Interval]:
     at = int(np.argmin(line))
     where, value = float(x[at]), float(line[at])
-    if not np.all(levels.errors > 0.0):
+    if not np.all(np.isfinite(levels.errors)):
         return Interval(where), Interval(value)
     rng = np.random.default_rng(SEED)
     drawn = levels.means + levels.errors * rng.standard_t(levels.freedoms, size=(DRAWS, len(levels.x)))

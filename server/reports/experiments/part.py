@@ -22,7 +22,7 @@ RATIOS = (2.0, 2.6, 7.0)
 """Λ of the robots whose pivot switches are looked at: hardly lifting, the plant's default, strong."""
 DEFAULT_RATIO = 2.6
 TILTS = tuple(math.radians(tilt) for tilt in range(10, 40, 5))
-RAMPS = (0.050,)
+RAMPS = (0.050, 0.150)
 
 UNKNOWNS = (
     "Section 6 prints curves without numbers, no gains, and neither where its runs start nor how long they last. "
@@ -41,7 +41,9 @@ def part(studies: Sequence[Experiment], tables: Tables) -> Part:
     points = list(tilt_study(RATIOS, RAMPS, TILTS)) if RIGID in tables else []
     found = findings(tables, laws)
     if points:
-        found.append(tilt_claims.cause([point for point in points if point.ratio == DEFAULT_RATIO]))
+        quick = [point for point in points if point.ramp == RAMPS[0]]
+        found.append(tilt_claims.cause([point for point in quick if point.ratio == DEFAULT_RATIO]))
+        found.append(tilt_claims.by_magnet(quick))
     shown = _pictures(studies, tables, laws, points)
     numbers = {"section6_scatter": widths(laws)}
     if points:

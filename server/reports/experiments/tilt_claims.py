@@ -23,7 +23,7 @@ from server.reports.experiments.truth import (
     lies_below,
     most_of,
 )
-from server.reports.findings import Finding
+from server.reports.findings import Finding, Verdict
 from server.reports.study.naming import with_interval
 
 SWEEPS = {10: 24.5, 30: 25.0}
@@ -113,6 +113,28 @@ def cause(points: Sequence[TiltPoint]) -> Finding:
         f"{LOOKED_AT[1]}°, {slips[0]} mm at {LOOKED_AT[2]}°",
         all_of((sticks[2], slips[2])), "a property of the assumed robot: the free end lifts where Λ sin α > 1",
     )  # fmt: skip
+
+
+def by_magnet(points: Sequence[TiltPoint]) -> Finding:
+    """Where that minimum lies follows from the magnet: what the switches of weak and of strong ones do."""
+    lowest, highest = (math.degrees(end(point.tilt for point in points)) for end in (min, max))
+    texts = [
+        _of_magnet(ratio, [point for point in points if point.ratio == ratio])
+        for ratio in sorted({point.ratio for point in points})
+    ]
+    return Finding(
+        "6, tilt", "–", f"rigid plant, from {lowest:.0f}° to {highest:.0f}° of tilt: {'; '.join(texts)}",
+        Verdict.NOT_COMPARABLE,
+        "the paper does not print its robot's Λ; where a best tilt lies follows from it and predicts nothing",
+    )  # fmt: skip
+
+
+def _of_magnet(ratio: float, points: Sequence[TiltPoint]) -> str:
+    ends = [end(points, key=lambda point: point.tilt).figures for end in (min, max)]
+    play = " to ".join(f"{math.degrees(figures.play.mean):.1f}°" for figures in ends)
+    slip = " to ".join(f"{figures.displacement.mean / MM:.2f} mm" for figures in ends)
+    lifting = math.degrees(math.asin(min(1.0, 1.0 / ratio)))
+    return f"at Λ = {ratio:g} the free end lifts from {lifting:.0f}° on, play {play}, slip of a pivot {slip}"
 
 
 def _more(one: Spread, other: Spread, count: int, scale: float) -> tuple[str, str, Truth]:

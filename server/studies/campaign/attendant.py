@@ -8,20 +8,24 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Literal
+from typing import Literal, TypeVar
 
 from control.coil_heat import OFF_AT
 from control.gait import Gait
 from control.loop import PAUSED, ControlLoop
+from control.model import Tracking
 from control.safety import Refused
 from control.snapshot import RigState, Snapshot
 from server.studies.campaign.operator import Operator
 from server.studies.campaign.rules import MINUTE, Rules
 
+T = TypeVar("T")
+
 RETRY = 0.5
 """What was refused is asked for again so often, s."""
 CALM = 1.0
-"""A held rig rests for this long at least before it goes on, s."""
+"""The robot is seen for this long, s, on a rig whose state does not change, before its coils are switched on: whoever
+puts it back by hand has drawn the hand away."""
 COOLING = "the coils cool"
 """Why a campaign's rig is held that is not held by a fault."""
 
@@ -47,7 +51,8 @@ class Attendant:
         self._rules = rules
         self._may_arm = operator.may_arm
         self._order: Stopped | None = None
-        self._asked_at = self._held_at = self._disk_refused_at = -math.inf
+        self._was: RigState | None = None
+        self._asked_at = self._calm_since = self._disk_refused_at = -math.inf
 
     def stop(self, reason: str, *, is_end: bool = False) -> None:
         """From any thread and from signal handlers: what goes on ends at the next tick. The first order counts."""
@@ -56,9 +61,26 @@ class Attendant:
     def tick(self) -> Snapshot:
         """The next tick; raises `Stopped` once that was ordered."""
         snapshot = self._operator.tick()
+        self.require_going()
+        if snapshot.rig is not self._was or snapshot.tracking is not Tracking.LOCKED:
+            self._calm_since = self._operator.now
+        self._was = snapshot.rig
+        return snapshot
+
+    def require_going(self) -> None:
+        """Raises `Stopped` once that was ordered; from any thread."""
         if self._order is not None:
             raise self._order
-        return snapshot
+
+    def do(self, act: Callable[[ControlLoop], T]) -> T:
+        """Between two ticks, and not once the campaign has been stopped: an order that comes while this is on its way
+        to the rig counts before it. Raises `Stopped`, and what `act` raises."""
+
+        def unless_stopped(loop: ControlLoop) -> T:
+            self.require_going()
+            return act(loop)
+
+        return self._operator.do(unless_stopped)
 
     # Until a run may begin -----------------------------------------------------------------------
 
@@ -91,24 +113,31 @@ class Attendant:
         where a run may begin."""
         if self._is_fit(snapshot):
             return self._disk_trouble()
-        if snapshot.rig is not RigState.HELD:
-            self._held_at = self._operator.now
         match snapshot.rig:
-            case RigState.HELD if snapshot.reason == PAUSED:
-                return self._wait("paused: it goes on when somebody resumes it")
             case RigState.FAULT:
+                self._may_arm = False
                 return self._need_person(f"reset and arm the rig ({snapshot.reason})")
             case RigState.DISARMED if not self._may_arm:
                 return self._need_person(f"arm the rig ({snapshot.reason})")
             case _ if not self._is_cool(snapshot):
                 return self._cool(snapshot)
+            case RigState.DISARMED | RigState.HELD if not self._is_calm:
+                return self._told(f"waiting: {snapshot.tracking_reason or snapshot.reason}")
             case RigState.DISARMED:
-                return self._try(lambda loop: loop.arm(gait, consent=True), "getting ready")
-            case RigState.HELD if self._operator.now - self._held_at >= CALM:
+                return self._try(lambda loop: self._arm(loop, gait), "getting ready")
+            case RigState.HELD:
                 return self._try(lambda loop: loop.resume(), "held")
-            case RigState.ARMED:
+            case _:
                 return self._told(f"waiting: {snapshot.tracking_reason or 'something bars the way'}")
-        return ""
+
+    @property
+    def _is_calm(self) -> bool:
+        return self._operator.now - self._calm_since >= CALM
+
+    def _arm(self, loop: ControlLoop, gait: Gait) -> None:
+        """Once: what a person has agreed to holds for no second time."""
+        loop.arm(gait, consent=True)
+        self._may_arm = False
 
     def _disk_trouble(self) -> str | None:
         """Why a run could not be recorded, None where it could."""
@@ -120,10 +149,6 @@ class Attendant:
             self._disk_refused_at = self._operator.now
             return self._told(f"waiting: {refusal}")
         return None
-
-    def _wait(self, words: str) -> str:
-        self.say(words)
-        return ""
 
     def _told(self, words: str) -> str:
         self.say(words)
@@ -149,10 +174,10 @@ class Attendant:
             return doing
         self._asked_at = self._operator.now
         try:
-            self._operator.do(act)
+            self.do(act)
         except Refused as refusal:
             return self._told(f"{doing}: {refusal}")
-        return ""
+        return doing
 
     # While the robot walks -----------------------------------------------------------------------
 

@@ -105,7 +105,7 @@ class Campaign:
         for attempt in range(1, self._rules.attempts + 1):
             try:
                 self._way_back.bring(_start_of(run), run.selection)
-                run_id = self._operator.start(self._request(run))
+                run_id = self._operator.start(self._request(run), self._attendant.require_going)
                 self._say("walking")
                 return finished_row(run, run_id, metrics_json(self._walked(run_id)), attempt)
             except (Interrupted, Refused) as error:

@@ -72,8 +72,9 @@ class HeadlessOperator:
     def check_disk(self) -> None:
         self._recording.check(self._machine)
 
-    def start(self, request: RunRequest) -> str:
+    def start(self, request: RunRequest, permit: Callable[[], None]) -> str:
         self.check_disk()
+        permit()
         run = Run(new_id(), request, RunState.RUNNING, datetime.now(UTC))
         self._loop.start(run.id, request)
         self._recording.begin(self._machine, run)

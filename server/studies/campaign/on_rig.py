@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from control.loop import ControlLoop
 from control.runs import Run, RunRequest
-from control.snapshot import Snapshot
+from control.safety import Refused
+from control.snapshot import RigState, Snapshot
 from server.occupation import Occupant
 from server.studies.campaign.operator import RigGone
 
@@ -38,6 +39,7 @@ class RigOperator:
         self._rig = rig
         self._events = asyncio.get_running_loop()
         self._ticked = threading.Event()
+        self._stopped_before = rig.occupation.latest_stop
         self._newest: Snapshot | None = None
         """Of the ticks since the campaign did something."""
 
@@ -47,7 +49,13 @@ class RigOperator:
 
     @contextmanager
     def occupied(self, by: Occupant) -> Iterator[None]:
-        with self._rig.occupation.by(by), self._rig.watched(self._see):
+        """A stop that came since the campaign was asked for counts; raises `Refused` while a run goes on."""
+        occupation = self._rig.occupation
+        with occupation.by(by), self._rig.watched(self._see):
+            stop = occupation.latest_stop
+            if stop is not None and stop is not self._stopped_before:
+                by.stop(stop.reason, is_end=stop.is_end)
+            self.do(_require_no_run)
             yield
 
     def _see(self, snapshot: Snapshot) -> None:
@@ -74,8 +82,8 @@ class RigOperator:
     def check_disk(self) -> None:
         self._rig.check_recording()
 
-    def start(self, request: RunRequest) -> str:
-        return self._answer(self._rig.begin_run(request)).id
+    def start(self, request: RunRequest, permit: Callable[[], None]) -> str:
+        return self._answer(self._rig.begin_run(request, permit)).id
 
     def outcome(self, id: str) -> Run:
         return self._rig.runs.of(id)
@@ -101,3 +109,9 @@ class RigOperator:
             if self._rig.updates.closed:  # its thread has ended
                 raise RigGone(CLOSED) from error
             raise
+
+
+def _require_no_run(loop: ControlLoop) -> None:
+    """Somebody else's run is not the campaign's to resume."""
+    if loop.state in (RigState.RUNNING, RigState.HELD):
+        raise Refused(f"a run is {loop.state}; let it come to its end, or stop it, and begin the study then")

@@ -49,8 +49,11 @@ class Operator(Protocol):
         """Raises `Refused` where a run could not be recorded."""
         ...
 
-    def start(self, request: RunRequest) -> str:
-        """Start a run that is recorded, and listed in the catalogue; its id. Raises like `ControlLoop.start`."""
+    def start(self, request: RunRequest, permit: Callable[[], None]) -> str:
+        """Start a run that is recorded, and listed in the catalogue; its id. Raises like `ControlLoop.start`.
+
+        permit: asked just before, between the same two ticks; what it raises is raised.
+        """
         ...
 
     def outcome(self, id: str) -> Run:

@@ -57,7 +57,7 @@ class WayBack:
             replace(selection, controller=aim), ENOUGH_PASSES, duration=WITHIN, unattended=True
         )
         try:
-            self._operator.do(lambda loop: loop.start(ID, request))
+            self._attendant.do(lambda loop: loop.start(ID, request))
             self._attendant.follow()
         except (Refused, Interrupted) as obstacle:
             self._attendant.say(f"the way back was interrupted: {obstacle}")
