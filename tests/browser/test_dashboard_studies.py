@@ -99,7 +99,8 @@ def test_a_search_shows_all_that_it_tried_before_what_it_has_learned_and_its_ans
         "axes": [{"of": name, "from": low, "to": high} for name, (low, high) in ranges.items()],
         "tune": {"budget": 8, "first": 5, "at_once": 2, "confirm": 1},
     }  # fmt: skip
-    made = served.send("POST", "/studies", {"definition": definition})
+    served.send("POST", "/studies", {"definition": definition})
+    (made,) = served.ask("/studies")["studies"]
     page = visit.page
     page.get_by_role("button", name="three ranges").first.click()
     study = page.get_by_role("article", name="three ranges")

@@ -14,11 +14,12 @@ from control.studies.analysis.whole import analyse
 from control.studies.batch import plain_walk
 from control.studies.definition import StudyDefinition
 from control.studies.table import StudyRow, StudyTable
+from control.studies.tuning.answer import Answer, Interval
 from server.reports.study.plot import plot_png
 from server.reports.study.printed import PRINTED
 from server.reports.study.report import write_report
 from server.reports.study.walks import Recorded, WalkedAgain
-from server.reports.study.words import sentences
+from server.reports.study.words import of_search, sentences
 from tests.control.studies.planted import planted_table
 from tests.server.recorded_walk import record_walk
 
@@ -194,6 +195,12 @@ def test_the_answer_of_a_search_is_said_first(tmp_path: Path) -> None:
     found = page[page.index("What was found") :]
     assert re.search(r"<li>The search's answer is tilt .*, sweep .*: .* measured in [12] runs?", found)
     assert (tmp_path / "surface.png").read_bytes().startswith(PNG)
+
+
+@pytest.mark.parametrize(("left", "said"), [(2, "are still to come"), (0, "no finished run confirms it")])
+def test_an_answer_that_nothing_confirms_says_whether_that_will_come(left: int, said: str) -> None:
+    found = Answer({TILT: 25}, "normalized_mean_error", Interval(0.3, 0.2, 0.4), None, runs=0, left=left)
+    assert said in of_search(found)
 
 
 def test_a_study_without_a_single_row_has_a_picture_that_says_so() -> None:
