@@ -48,11 +48,13 @@ class Occupation:
 
     def require_none(self) -> None:
         """Raises `Refused` while somebody has the rig to itself."""
-        if self._occupant is not None:
-            raise Refused(f"{self._occupant.name} is running; stop it first")
+        occupant = self._occupant  # it may leave meanwhile, on its own thread
+        if occupant is not None:
+            raise Refused(f"{occupant.name} is running; stop it first")
 
     def stop(self, reason: str, *, is_end: bool = False) -> None:
         """Tell the occupant, if there is one."""
         self.latest_stop = Stop(reason, is_end)
-        if self._occupant is not None:
-            self._occupant.stop(reason, is_end=is_end)
+        occupant = self._occupant  # it may leave meanwhile, on its own thread
+        if occupant is not None:
+            occupant.stop(reason, is_end=is_end)

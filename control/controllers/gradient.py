@@ -18,7 +18,7 @@ from pydantic import Field
 from control.controllers.controller import Decision, Situation, controllers
 from control.controllers.heading import HeadingParameters, WantedHeading
 from control.gait import Gait
-from control.model import distance, opposite, wrap
+from control.model import Pivot, distance, opposite, wrap
 
 BASE_LOOK_AHEAD = 0.33
 LOOK_AHEAD_PER_SWEEP = 0.955
@@ -32,6 +32,12 @@ TINY = 1e-12
 """Keeps the curvature away from zero where the desired point lies on the pivot, m^2."""
 FIRST_TURN = 0.2
 """The two directions of turning are tried from this far on either side of standing still, rad."""
+ALIKE = 1e-12
+"""Ends of the descent whose J differ by less are equally low, m^2: a nanometre at a millimetre from the desired point.
+
+More than `CONVERGED` leaves (1e-13) and far more than rounding does, so that what lies symmetrically, as two pivots
+side by side before a point straight ahead, is not told apart by the last digit of a sine.
+"""
 SHORT_OF_GOAL = 0.3
 """A robot that comes to rest farther than this from the desired point, in lengths, has to use the other pivot."""
 
@@ -116,13 +122,23 @@ def descend(cost: Cost, sigma: float, rate: float, max_rate: float) -> float:
 
 
 def lowest_on(cost: Cost, sigma: float, max_rate: float) -> tuple[float, float]:
-    """The lowest J (m^2) about one pivot, from a start on each way round, and its rate (rad/s)."""
+    """The lowest J (m^2) about one pivot, from a start on each way round, and its rate (rad/s).
+
+    Of ends that are alike, that of the start to the right, by the smaller rate.
+    """
     first = FIRST_TURN / cost.look_ahead
     rate, other = descend(cost, sigma, first, max_rate), descend(cost, sigma, -first, max_rate)
     value, other_value = cost_value(cost, rate, sigma), cost_value(cost, other, sigma)
-    if other_value < value or (other_value == value and other < rate):
+    if other_value < value + ALIKE:
         return other_value, other
     return value, rate
+
+
+def is_other_lower(end: float, lowest: float, pivot: Pivot) -> bool:
+    """Whether the end on the other pivot is lower than that on `pivot`, J in m^2; of ends that are alike, B's is."""
+    if abs(end - lowest) < ALIKE:
+        return opposite(pivot) < pivot
+    return end < lowest
 
 
 def gone_on(rate: float, turned: float, sweep: float, tau: float, max_rate: float) -> float:
@@ -163,10 +179,9 @@ class Gradient:
         cost, gait, pivot = self._cost(situation), situation.gait, situation.pivot
         lowest, rate = lowest_on(cost, pivot, gait.max_rate)
         if situation.may_switch:
-            other = opposite(pivot)
-            end = lowest_on(cost, other, gait.max_rate)
-            if end[0] < lowest or (end[0] == lowest and other < pivot):
-                pivot, (lowest, rate) = other, end
+            end = lowest_on(cost, opposite(pivot), gait.max_rate)
+            if is_other_lower(end[0], lowest, pivot):
+                pivot, (lowest, rate) = opposite(pivot), end
         if is_at_rest_too_far(cost, lowest, rate, gait.sweep):
             rate = gone_on(rate, situation.turned, gait.sweep, cost.look_ahead, gait.max_rate)
         return Decision(pivot, rate)

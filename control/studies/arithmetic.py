@@ -8,6 +8,7 @@ import platform
 from dataclasses import dataclass
 from functools import cache
 from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
 
 import numpy as np
 
@@ -16,6 +17,8 @@ PACKAGES = ("pivotrig", "numpy", "scipy", "numba", "llvmlite", "mujoco")
 PROBES = 500
 """Arguments at which the functions are tried: enough for libraries that round differently to give themselves away."""
 ABSENT = "not installed"
+SOURCES = Path(__file__).parents[1]
+"""The folder of all that a run is made of."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,8 +44,17 @@ class Ground:
 @cache
 def ground() -> Ground:
     """That of this process."""
-    versions = (("Python", platform.python_version()), *((name, _version(name)) for name in PACKAGES))
+    packages = ((name, _version(name)) for name in PACKAGES)
+    versions = ("Python", platform.python_version()), *packages, ("pivotrig's source text", text_of(SOURCES))
     return Ground(versions, _rounding())
+
+
+def text_of(folder: Path) -> str:
+    """A digest of all Python files in it: a version's number does not tell of a line that was edited since."""
+    digest = hashlib.sha256()
+    for file in sorted(folder.rglob("*.py")):
+        digest.update(file.relative_to(folder).as_posix().encode() + b"\0" + file.read_bytes() + b"\0")
+    return digest.hexdigest()[:12]
 
 
 def _version(package: str) -> str:

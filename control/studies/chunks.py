@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import hashlib
 import threading
 import time
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 from control import plugins
@@ -26,11 +28,19 @@ class WorkersLost(Exception):
 
 
 @dataclass(frozen=True, slots=True)
+class PluginFile:
+    """path: absolute.  text: a digest of what was in it when it was loaded."""
+
+    path: str
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
 class Chunk:
-    """runs: in their order.  plugins: files of controllers and trajectories.  ground: what the results rest on."""
+    """runs: in their order.  plugins: of controllers and trajectories.  ground: what the results rest on."""
 
     runs: tuple[PlannedRun, ...]
-    plugins: tuple[str, ...]
+    plugins: tuple[PluginFile, ...]
     ground: Ground
 
 
@@ -44,7 +54,8 @@ class Done:
 
 def chunk_of(runs: tuple[PlannedRun, ...]) -> Chunk:
     """With all that a process elsewhere has to know."""
-    return Chunk(runs, tuple(str(path.resolve()) for path in plugins.loaded_files()), ground())
+    paths = (str(path.resolve()) for path in plugins.loaded_files())
+    return Chunk(runs, tuple(PluginFile(path, _text(path)) for path in paths), ground())
 
 
 def work(chunk: Chunk) -> Done:
@@ -71,7 +82,22 @@ def _get_ready(chunk: Chunk) -> None:
             "install the same versions there"
         )
     with _loading:
-        _load_plugins(chunk.plugins)
+        _load_plugins(tuple(plugin.path for plugin in chunk.plugins))
+    for plugin in chunk.plugins:
+        if plugin.text != _text(plugin.path):
+            raise WorkersLost(
+                f"a worker has another text of the plug-in {plugin.path} than this program, so its results would "
+                "differ; give it the same file and start it again"
+            )
+
+
+@cache
+def _text(path: str) -> str:
+    """A digest of the file as this process met it first: one that is changed later is not loaded again."""
+    try:
+        return hashlib.sha256(Path(path).read_bytes()).hexdigest()
+    except OSError:
+        return ""
 
 
 def _load_plugins(files: tuple[str, ...]) -> None:

@@ -97,7 +97,7 @@ class StudyDefinition(Edge):
         """Raises `StudyError`."""
         try:
             raw = tomllib.loads(text)
-        except tomllib.TOMLDecodeError as error:
+        except (ValueError, RecursionError) as error:
             raise StudyError(f"this is no TOML: {error}") from None
         return cls.from_json(raw)
 

@@ -107,6 +107,7 @@ class StudyRow:
             and row.state in ("finished", "failed")
             and isinstance(row.values, Mapping)
             and isinstance(row.metrics, Mapping)
+            and all(value is None or isinstance(value, int | float) for value in row.metrics.values())
             and isinstance(row.reason, str)
             and isinstance(row.run_id, str)
         ):

@@ -14,9 +14,7 @@ from pydantic import Field
 from starlette.responses import FileResponse
 
 from control.simulation.plants import plants
-from control.studies.checking import Survey, survey
-from control.studies.definition import StudyDefinition
-from server.api.access import TheRig
+from control.studies.checking import Survey
 from server.api.body import StrictRoute
 from server.api.choices import listing
 from server.api.problems import Problem, Rejected, not_found, offence
@@ -24,8 +22,8 @@ from server.api.study_bodies import Begin, DefinitionBody, Metric, StudyBody, me
 from server.api.study_json import StudyJson, axes_json
 from server.studies.child import ChildFailed
 from server.studies.desk import StudyDesk
-from server.studies.duration import wall_time
 from server.studies.errors import NoSuchStudy, StudyBusy, StudyStoreError
+from server.studies.expectation import expected_wall
 from server.studies.learning import Learning
 from server.studies.progress import measure_of
 from server.studies.study import RESULTS, Study
@@ -87,10 +85,10 @@ async def list_plants() -> list[dict[str, Any]]:
 
 
 @router.post("/studies", status_code=201)
-async def create(body: StudyBody, rig: TheRig, desk: TheDesk, shown: TheJson) -> dict[str, Any]:
+async def create(body: StudyBody, desk: TheDesk, shown: TheJson) -> dict[str, Any]:
     """Make a study, and begin it unless `begin` is false."""
-    definition = body.read()
-    found = await asyncio.to_thread(survey, definition, workspace_of(definition, rig))
+    definition = await asyncio.to_thread(body.read)
+    found = await desk.surveyed(definition)
     if found.problems:
         raise Rejected(wrong([offence((), text) for text in found.problems]))
     if body.begin:
@@ -100,11 +98,6 @@ async def create(body: StudyBody, rig: TheRig, desk: TheDesk, shown: TheJson) ->
     if body.begin:
         await begun(desk, study, body.how)
     return await blocking(shown.short, study)
-
-
-def workspace_of(definition: StudyDefinition, rig: TheRig) -> float | None:
-    """Half the side of the rig's square, m; None: a batch has its own."""
-    return rig.coils.workspace if definition.on == "rig" else None
 
 
 def with_words(check: Callable[[], None]) -> None:
@@ -122,17 +115,17 @@ async def begun(desk: StudyDesk, study: Study, how: Begin) -> None:
 
 
 @router.post("/studies/preview")
-async def preview(body: DefinitionBody, rig: TheRig) -> dict[str, Any]:
+async def preview(body: DefinitionBody, desk: TheDesk) -> dict[str, Any]:
     """How many runs that would be and about how long they take; or `problems`, by field, and nothing else."""
     try:
-        definition = body.read()
+        definition = await asyncio.to_thread(body.read)
     except Rejected as rejected:
         return _nothing_but(rejected.problem.errors)
-    found = await asyncio.to_thread(survey, definition, workspace_of(definition, rig))
+    found = await desk.surveyed(definition)
     return {
         "sets": found.sets,
         "runs": found.runs,
-        "seconds": round(wall_time(definition, found), 1),
+        "seconds": round(expected_wall(definition, found), 1),
         "rig_seconds": round(found.walking + found.resting, 1),
         "axes": axes_json(definition),
         "problems": _problems(found),
@@ -182,7 +175,7 @@ async def stop(study: TheStudy, desk: TheDesk, shown: TheJson) -> dict[str, Any]
 @router.post("/studies/{study_id}/resume")
 async def resume(study: TheStudy, desk: TheDesk, shown: TheJson, body: Begin | None = None) -> dict[str, Any]:
     """Go on with what is left; nothing that has finished is done again."""
-    if await blocking(lambda: study.state) == "finished":
+    if await blocking(lambda: study.is_complete):
         raise Rejected(Problem(409, "Finished", "This study has finished; nothing is left to be done."))
     await begun(desk, study, body or Begin())
     return await blocking(shown.short, study)
@@ -248,8 +241,9 @@ async def _report_page(desk: StudyDesk, study: Study) -> Path:
 
 
 def _is_fresh(study: Study, path: Path) -> bool:
+    """Whether it was made of all rows: it has the time of the rows that it was made of."""
     results = study.folder / RESULTS
-    return path.exists() and results.exists() and path.stat().st_mtime >= results.stat().st_mtime
+    return path.exists() and results.exists() and path.stat().st_mtime_ns == results.stat().st_mtime_ns
 
 
 def _zipped(study: Study) -> bytes:

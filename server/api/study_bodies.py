@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import tomllib
 from collections.abc import Mapping
 from typing import Annotated, Any, Self
@@ -16,6 +17,8 @@ from server.api.schemas import Edge
 
 LONGEST_FILE = 200_000
 """Characters of a definition; ten thousand listed sets are more than anybody writes."""
+DEEPEST_KEY = re.compile(r"""(?<![\w-])(?:(?:[\w-]+|"[^"\n]*"|'[^'\n]*')[ \t]*\.[ \t]*){20}""")
+"""A key of so many parts belongs to no study, and Python's reader of TOML takes minutes for one of thousands."""
 
 
 class DefinitionBody(Edge):
@@ -31,7 +34,7 @@ class DefinitionBody(Edge):
         return self
 
     def read(self) -> StudyDefinition:
-        """Raises `Rejected` with every wrong field."""
+        """Raises `Rejected` with every wrong field. For a worker thread: thousands of sets take seconds."""
         return definition_of(self.definition if self.definition is not None else _parsed(self.toml or ""))
 
 
@@ -72,12 +75,16 @@ def definition_of(raw: Mapping[str, Any]) -> StudyDefinition:
         return StudyDefinition.model_validate_json(json.dumps(raw))
     except ValidationError as error:
         raise Rejected(wrong(offences(error.errors()))) from None
+    except (TypeError, ValueError, RecursionError) as error:  # TOML has dates, and no end of nesting
+        raise Rejected(wrong([offence((), f"this is no study: {error}")])) from None
 
 
 def _parsed(text: str) -> Mapping[str, Any]:
+    if DEEPEST_KEY.search(text):
+        raise Rejected(wrong([offence((), "this is no study: a key has more than 20 parts")]))
     try:
         return tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
+    except (ValueError, RecursionError) as error:
         raise Rejected(wrong([offence((), f"this is no TOML: {error}")])) from None
 
 

@@ -49,7 +49,7 @@ class StudyJson:
 
     def listed(self) -> list[dict[str, Any]]:
         """All studies, newest first."""
-        return [self.short(study) for study in self._desk.store.all()]
+        return self._desk.store.described(self.short)
 
     def short(self, study: Study) -> dict[str, Any]:
         """As it is listed."""

@@ -44,7 +44,7 @@ def list_studies(data: DataOption = None, plugin: PluginOption = None, as_json: 
     """List studies, newest first."""
     load_plugins(plugin)
     with opened_store(data) as store:
-        found = [_summary(study) for study in store.all()]
+        found = store.described(_summary)
         tell_of_unreadable(store)
     if as_json:
         print(json.dumps({"studies": found}, ensure_ascii=False, allow_nan=False))
@@ -132,7 +132,7 @@ def resume(
     load_plugins(plugin)
     with opened_store(data) as store:
         study = chosen(store, id)
-        if study.state == "finished":
+        if study.is_complete:
             from server.studies.carrying_out import Carried
 
             print_outcome(result_of(study, Carried("finished")), as_json=as_json)

@@ -116,7 +116,7 @@ def foreseen(definition: StudyDefinition, survey: Survey, sitting: Sitting) -> d
         "sets": survey.sets,
         "runs": survey.runs,
         "rig_s": round(survey.walking + survey.resting, 1),
-        "wall_s": round(expected_wall(definition, survey, sitting.jobs, simulated=simulated), 1),
+        "wall_s": round(expected_wall(definition, survey, sitting.jobs, headless=simulated), 1),
     }
 
 

@@ -5,7 +5,8 @@ JSON object a line.
 report: its report into the study's folder.  plot: its figure, PNG, to stdout.  learned: what a search for the best
 has learned, JSON, to stdout.
 A process of its own, since it takes seconds to hours of Python and the control loop must not share its interpreter
-with that. It ends with the server: its stdin does. Exit status: 0 done, 3 impossible, with the reason on stderr.
+with that. It ends with the server: its stdin does. What a plug-in prints goes nowhere. Exit status: 0 done,
+3 impossible, with the reason on stderr.
 """
 
 from __future__ import annotations
@@ -18,8 +19,9 @@ import threading
 import time
 from collections.abc import Sequence
 from contextlib import closing
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, BinaryIO
 
 from control import plugins
 from control.studies.errors import StudyError
@@ -44,14 +46,31 @@ def main(verb: str, jobs: str, data: str, id: str, *files: str) -> int:
     )  # a server that runs in the background ignores it
     threading.Thread(target=_end_with_the_server, name="server's end", daemon=True).start()
     try:
-        _load(files)
-        _do(verb, int(jobs), Path(data), id)
+        with _answer() as answer:
+            _load(files)
+            _do(Order(verb, int(jobs), Path(data), id), answer)
     except (StudyStoreError, StudyError, plugins.PluginError, OSError) as error:
         print(error, file=sys.stderr)
         return IMPOSSIBLE
     except KeyboardInterrupt:  # the study says so itself
         return 0
     return 0
+
+
+@dataclass(frozen=True, slots=True)
+class Order:
+    verb: str
+    jobs: int
+    data: Path
+    id: str
+
+
+def _answer() -> BinaryIO:
+    """What was stdout; nobody else of this process, or of its workers, can write between the lines any more."""
+    answer = os.fdopen(os.dup(sys.stdout.fileno()), "wb")
+    with open(os.devnull, "wb") as nowhere:
+        os.dup2(nowhere.fileno(), sys.stdout.fileno())
+    return answer
 
 
 def _end_with_the_server() -> None:
@@ -67,49 +86,52 @@ def _load(files: Sequence[str]) -> None:
         plugins.load_file(Path(file))
 
 
-def _do(verb: str, jobs: int, data: Path, id: str) -> None:
+def _do(order: Order, answer: BinaryIO) -> None:
     from server.catalogue.catalogue import Catalogue
     from server.studies.store import StudyStore
 
-    with closing(Catalogue.open(data)) as catalogue:
-        study = StudyStore(data, catalogue).open(id)
-        if verb == "carry-out":
-            _carry_out(study, jobs)
+    with closing(Catalogue.open(order.data)) as catalogue:
+        study = StudyStore(order.data, catalogue).open(order.id)
+        if order.verb == "carry-out":
+            _carry_out(study, order.jobs, answer)
         else:
-            {"report": _report, "plot": _plot, "learned": _learned}[verb](study)
+            answer.write({"report": _report, "plot": _plot, "learned": _learned}[order.verb](study))
 
 
-def _carry_out(study: Study, jobs: int) -> None:
+def _carry_out(study: Study, jobs: int, answer: BinaryIO) -> None:
     from server.studies.carrying_out import Workforce, carry_out_batch
 
-    carry_out_batch(study, Workforce(jobs or _jobs_worth_starting(study)), Telling().heed)
+    carry_out_batch(study, Workforce(jobs or _jobs_worth_starting(study)), Telling(answer).heed)
 
 
 def _jobs_worth_starting(study: Study) -> int:
     """What is done before further processes have begun is done in this one; the results are the same."""
     from control.studies.checking import survey
-    from server.studies.duration import STARTING, wall_time
+    from server.studies.expectation import READY, computing
 
-    quick = wall_time(study.definition, survey(study.definition)) < 2.0 * STARTING
-    return 1 if quick else 0
+    return 1 if computing(study.definition, survey(study.definition)) < READY else 0
 
 
-def _report(study: Study) -> None:
+def _report(study: Study) -> bytes:
+    """It has the time of the newest row that is in it: who is asked for it again sees whether there are newer ones."""
     from server.catalogue.shelf import RECORDINGS
     from server.reports.study.report import write_report
+    from server.studies.study import RESULTS
 
+    of = (study.folder / RESULTS).stat().st_mtime_ns
     recordings = study.folder.parents[1] / RECORDINGS
-    write_report(study.table(), study.definition, study.report_folder, recordings)
+    page = write_report(study.table(), study.definition, study.report_folder, recordings)
+    os.utime(page, ns=(of, of))
+    return b""
 
 
-def _plot(study: Study) -> None:
+def _plot(study: Study) -> bytes:
     from server.reports.study.plot import plot_png
 
-    sys.stdout.buffer.write(plot_png(study.table(), study.definition))
-    sys.stdout.buffer.flush()
+    return plot_png(study.table(), study.definition)
 
 
-def _learned(study: Study) -> None:
+def _learned(study: Study) -> bytes:
     from control.studies.tuning import answer, learned_surface
 
     rows = {row.index: row for row in study.rows()}
@@ -118,13 +140,14 @@ def _learned(study: Study) -> None:
         "answer": None if found is None else found.to_json(),
         "surface": None if learned is None else learned.to_json(),
     }
-    print(json.dumps(shown), flush=True)
+    return json.dumps(shown).encode()
 
 
 class Telling:
-    """Progress as lines on stdout, not more often than a page can show."""
+    """Progress as lines, not more often than a page can show."""
 
-    def __init__(self) -> None:
+    def __init__(self, answer: BinaryIO) -> None:
+        self._answer = answer
         self._next = 0.0
 
     def heed(self, progress: Progress) -> None:
@@ -132,7 +155,8 @@ class Telling:
         if now < self._next and progress.done < progress.total:
             return
         self._next = now + BETWEEN_LINES
-        print(json.dumps(progress.to_json()), flush=True)
+        self._answer.write(json.dumps(progress.to_json()).encode() + b"\n")
+        self._answer.flush()
 
 
 if __name__ == "__main__":

@@ -10,9 +10,11 @@ import math
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import islice
 
 from control.metrics import Metrics
 from control.studies.definition import StudyDefinition
+from control.studies.errors import StudyError
 from control.studies.plan import Plan, PlannedRun
 from control.studies.table import StudyRow
 from control.studies.workers import Failed, Workers, WorkersLost, hired
@@ -45,7 +47,8 @@ class Carried:
 def carry_out_batch(
     study: Study, workforce: Workforce = Workforce(), watch: Watch = lambda _: None
 ) -> Carried:
-    """All that is left of a study. Raises `StudyBusy` where somebody else is at it, and `StudyStoreError`.
+    """All that is left of a study. Raises `StudyBusy` where somebody else is at it, `StudyStoreError`, and
+    `StudyError` for a run that cannot be planned, as when its plug-in is missing.
 
     Ctrl-C (KeyboardInterrupt) leaves it stopped, `ProgramEnds` interrupted; both are raised on. Whatever comes
     between, it can go on later.
@@ -60,7 +63,7 @@ def carry_out_batch(
             raise
         except WorkersLost as error:
             carried = Carried("interrupted", str(error))
-        except StudyStoreError as error:
+        except (StudyStoreError, StudyError) as error:
             carrying.ends("interrupted", str(error))
             raise
         carrying.ends(carried.state, carried.reason)
@@ -69,7 +72,9 @@ def carry_out_batch(
 
 def _carried(study: Study, carrying: Carrying, workforce: Workforce, watch: Watch) -> Carried:
     plan = study.definition.plan()
-    rules, progression = Rules(study.definition, carrying), progression_of(study, plan)
+    rules, progression = Rules(study.definition, carrying, plan), progression_of(study, plan)
+    if rules.failed is not None:
+        return rules.failed
     with hired(workforce.jobs, workforce.dask) as workers:
         for rows in _rows(plan, carrying, workers):
             kept = rules.allowed(rows)
@@ -101,9 +106,10 @@ def _row(run: PlannedRun, outcome: Metrics | Failed) -> StudyRow:
 
 
 class Rules:
-    """When a study ends before its plan does."""
+    """When a study ends before its plan does. A limit of 0 never ends it."""
 
-    def __init__(self, definition: StudyDefinition, carrying: Carrying) -> None:
+    def __init__(self, definition: StudyDefinition, carrying: Carrying, plan: Plan) -> None:
+        self._plan, self._done = plan, carrying.done
         self._limit = definition.stop.failed_in_a_row
         self._hours = definition.stop.hours
         self._until = time.monotonic() + (self._hours * HOUR if self._hours else math.inf)
@@ -119,11 +125,17 @@ class Rules:
 
     @property
     def stopped(self) -> Carried | None:
-        if self._has_failed:
-            return Carried("failed", f"{self._in_a_row} runs in a row failed")
-        if time.monotonic() >= self._until:
+        """Where it ends now, after one run or more of this sitting."""
+        if self.failed is not None:
+            return self.failed
+        if time.monotonic() >= self._until and self._plan.next(self._done):
             return Carried("stopped", f"its {self._hours:g} hours are over")
         return None
+
+    @property
+    def failed(self) -> Carried | None:
+        """Also where whoever wrote the last of those rows died before it could say so."""
+        return Carried("failed", f"{self._in_a_row} runs in a row failed") if self._has_failed else None
 
     @property
     def _has_failed(self) -> bool:
@@ -133,7 +145,6 @@ class Rules:
 def _failed_last(carrying: Carrying) -> int:
     """How many of the newest rows failed; a person who goes on with a study that failed starts anew."""
     in_a_row = 0
-    if carrying.before.state != "failed":
-        for row in carrying.done.rows():
-            in_a_row = in_a_row + 1 if row.state == "failed" else 0
+    for row in islice(carrying.done.rows(), carrying.before.pardoned, None):
+        in_a_row = in_a_row + 1 if row.state == "failed" else 0
     return in_a_row

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import fcntl
 import json
 import os
@@ -12,7 +13,7 @@ from pathlib import Path
 from typing import Literal, get_args
 
 from server.atomic_save import replace_file
-from server.studies.errors import StudyBusy
+from server.studies.errors import NoSuchStudy, StudyBusy
 from server.studies.results_file import cannot_write
 
 StudyState = Literal["planned", "running", "stopped", "finished", "failed", "interrupted"]
@@ -20,19 +21,26 @@ StudyState = Literal["planned", "running", "stopped", "finished", "failed", "int
 interrupted: its program, its workers or its disk came to an end. All but finished can go on."""
 ENDED: tuple[StudyState, ...] = ("stopped", "finished", "failed", "interrupted")
 STATE, LOCK = "state.json", "lock"
-LOOKS, BETWEEN_LOOKS = 5, 0.02
-"""Who only asks whether a study is claimed holds its lock for some microseconds; pauses in s."""
+LOOKS, BETWEEN_LOOKS = 250, 0.02
+"""Who only asks whether a study is claimed holds its lock for some microseconds, or for as long as a busy computer
+lets it wait in the middle of that; pauses in s."""
 PROGRAM_ENDED = "the program that carried it out was ended"
 
 
 @dataclass(frozen=True, slots=True)
 class Condition:
-    """created_at: ISO 8601, UTC.  wall_s: time that it was worked on, all sittings together, s."""
+    """created_at: ISO 8601, UTC.  wall_s: time that it was worked on, all sittings together, s.
+
+    definition: its mark, "" where it is not known.  pardoned: rows that there were when a person last went on with
+    it after it had failed.
+    """
 
     state: StudyState
     created_at: str
     reason: str = ""
     wall_s: float = 0.0
+    definition: str = ""
+    pardoned: int = 0
 
     @property
     def created(self) -> datetime:
@@ -40,15 +48,19 @@ class Condition:
 
 
 def read_condition(folder: Path) -> Condition:
-    """As it stands on the disk; one whose file is lost is what its folder still tells."""
+    """As it stands on the disk; one whose file is lost is what its folder still tells. Raises `NoSuchStudy`."""
     try:
         found = json.loads((folder / STATE).read_bytes())
-        condition = Condition(found["state"], found["created_at"], found["reason"], float(found["wall_s"]))
+        known = found["state"], found["created_at"], found["reason"], float(found["wall_s"])
+        condition = Condition(*known, str(found.get("definition", "")), int(found.get("pardoned", 0)))
         if condition.state in get_args(StudyState) and condition.created.tzinfo is not None:
             return condition
     except (OSError, ValueError, TypeError, KeyError):
         pass
-    made = datetime.fromtimestamp(folder.stat().st_mtime, UTC)
+    try:
+        made = datetime.fromtimestamp(folder.stat().st_mtime, UTC)
+    except FileNotFoundError as error:
+        raise NoSuchStudy(folder.name) from error
     return Condition("interrupted", made.isoformat(), "its state file was lost")
 
 
@@ -64,9 +76,11 @@ class Claim:
     """The right to carry a study out. It dies with the process that has it."""
 
     def __init__(self, folder: Path, name: str) -> None:
-        """Raises `StudyBusy` where another process, or thread, has it."""
+        """Raises `StudyBusy` where another process, or thread, has it, and `NoSuchStudy`, `StudyStoreError`."""
         try:
             self._number = os.open(folder / LOCK, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o666)
+        except FileNotFoundError as error:
+            raise NoSuchStudy(folder.name) from error
         except OSError as error:
             raise cannot_write(folder / LOCK, error) from error
         if not self._locked():
@@ -76,14 +90,17 @@ class Claim:
                 f"the study {name!r} is being carried out already, by process {owner or '?'}; "
                 "wait until it has finished, or stop that one first"
             )
-        os.ftruncate(self._number, 0)
-        os.pwrite(self._number, f"{os.getpid()}\n".encode("ascii"), 0)
+        with contextlib.suppress(OSError):  # on a full disk nobody is told whose it is
+            os.ftruncate(self._number, 0)
+            os.pwrite(self._number, f"{os.getpid()}\n".encode("ascii"), 0)
 
     def _locked(self) -> bool:
         for _ in range(LOOKS):
             try:
                 fcntl.flock(self._number, fcntl.LOCK_EX | fcntl.LOCK_NB)
             except BlockingIOError:
+                if _has_owner(self._number):
+                    return False
                 time.sleep(BETWEEN_LOOKS)
             else:
                 return True
@@ -100,10 +117,16 @@ def is_claimed(folder: Path) -> bool:
     except OSError:
         return False
     try:
+        return _has_owner(number)
+    finally:
+        os.close(number)
+
+
+def _has_owner(number: int) -> bool:
+    """Whether the open lock file is somebody's; others who only look do not count."""
+    try:
         fcntl.flock(number, fcntl.LOCK_SH | fcntl.LOCK_NB)
     except BlockingIOError:
         return True
-    else:
-        return False
-    finally:
-        os.close(number)
+    fcntl.flock(number, fcntl.LOCK_UN)
+    return False

@@ -19,7 +19,8 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from control.studies.checking import runs_at_most
+from control.studies.checking import Survey, runs_at_most, survey
+from control.studies.definition import StudyDefinition
 from server.rig_life import ENDED
 from server.studies.campaign import Activity, Campaign
 from server.studies.child import Child, ChildFailed, Verb
@@ -39,7 +40,7 @@ BY_A_PERSON = "stopped by the operator"
 LAST_WORD = 2.0
 """At the end a campaign is waited for, but not for ever, s (gone within 5 s, faults.md row 16)."""
 DRAWN_AT_ONCE = 1
-"""Reports and figures that are made at the same time."""
+"""Reports and figures that are made at the same time; and definitions that are looked at."""
 
 
 @dataclass(slots=True)
@@ -73,10 +74,18 @@ class StudyDesk:
         self.store = StudyStore(self._data, archive.catalogue)
         self._works: dict[str, Work] = {}
         self._seats = asyncio.Semaphore(DRAWN_AT_ONCE)
+        self._looks = asyncio.Semaphore(DRAWN_AT_ONCE)
 
     def work_on(self, id: str) -> Work | None:
         """What is done on that study just now, if anything."""
         return self._works.get(id)
+
+    async def surveyed(self, definition: StudyDefinition) -> Survey:
+        """What it asks for, set by set, with what cannot be done. One at a time: thousands of sets take seconds of
+        the interpreter that the rig's loop needs."""
+        workspace = self._rig.coils.workspace if definition.on == "rig" else None
+        async with self._looks:
+            return await asyncio.to_thread(survey, definition, workspace)
 
     def require_free(self, on: str) -> None:
         """Raises `StudyBusy` where a campaign, or a batch, goes on already."""
@@ -145,8 +154,8 @@ class StudyDesk:
 
     async def _compute(self, work: Work, jobs: int) -> None:
         work.child = await Child.started("carry-out", self._data, work.study.id, jobs)
-        if work.is_unwanted:
-            work.child.interrupt()
+        if work.is_unwanted:  # one that has just begun may not hear it
+            await work.child.stop()
         await work.child.lines(lambda line: self._heard(work, line))
 
     def _heard(self, work: Work, line: bytes) -> None:

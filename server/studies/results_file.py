@@ -13,6 +13,7 @@ from array import array
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
+from control.studies.definition import MOST_RUNS
 from control.studies.table import StudyRow
 from server.studies.errors import StudyStoreError
 
@@ -103,10 +104,12 @@ def new_rows(path: Path, start: int) -> tuple[list[StudyRow], int]:
 
 
 def row_in(line: bytes) -> StudyRow | None:
+    """None for what is no row of any study."""
     try:
-        return StudyRow.from_json(json.loads(line))
+        row = StudyRow.from_json(json.loads(line))
     except (ValueError, TypeError, KeyError, RecursionError):
         return None
+    return row if 0 <= row.index < MOST_RUNS else None
 
 
 class Book:

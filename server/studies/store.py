@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import contextlib
-import json
 import re
 import shutil
+from collections.abc import Callable
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from control.studies.definition import StudyDefinition
-from control.studies.errors import StudyError
-from server.atomic_save import replace_file
 from server.run_list import new_id
+from server.studies import definition_file
 from server.studies.condition import Claim, Condition, write_condition
+from server.studies.definition_file import DEFINITION
 from server.studies.errors import NoSuchStudy, StudyStoreError
 from server.studies.study import Study
 
@@ -22,9 +22,10 @@ if TYPE_CHECKING:
     from server.catalogue.catalogue import Catalogue
     from server.catalogue.records import StudyRecord
 
+T = TypeVar("T")
+
 STUDIES = "studies"
 """In the data folder."""
-DEFINITION, FOR_PEOPLE = "definition.json", "definition.toml"
 _ID = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,79}")
 
 
@@ -40,12 +41,11 @@ class StudyStore:
         folder = self.folder / new_id()
         try:
             folder.mkdir(parents=True)
-            replace_file(folder / FOR_PEOPLE, definition.to_toml())
-            write_condition(folder, Condition("planned", datetime.now(UTC).isoformat()))
-            replace_file(folder / DEFINITION, json.dumps(definition.to_json(), ensure_ascii=False, indent=1))
-        except OSError as error:
+            _lay_out(folder, definition)
+        except (OSError, StudyStoreError) as error:
+            shutil.rmtree(folder, ignore_errors=True)
             raise StudyStoreError(
-                f"a study cannot be kept in {self.folder}: {error.strerror or error}; "
+                f"a study cannot be kept in {self.folder}: {getattr(error, 'strerror', None) or error}; "
                 "choose another folder with --data"
             ) from error
         study = Study(folder, definition, self._list)
@@ -57,11 +57,7 @@ class StudyStore:
         folder = self.folder / id
         if not _ID.fullmatch(id) or not (folder / DEFINITION).is_file():
             raise NoSuchStudy(id)
-        try:
-            definition = StudyDefinition.from_json(json.loads((folder / DEFINITION).read_bytes()))
-        except (OSError, ValueError, StudyError) as error:
-            raise StudyStoreError(f"the study {id} cannot be read: {error}") from error
-        return Study(folder, definition, self._list)
+        return Study(folder, definition_file.read(folder), self._list)
 
     def ids(self) -> list[str]:
         """Newest first."""
@@ -71,6 +67,14 @@ class StudyStore:
     def all(self) -> list[Study]:
         """Newest first; one that cannot be read is left out (`unreadable` says why)."""
         return list(self._readable({}))
+
+    def described(self, describe: Callable[[Study], T]) -> list[T]:
+        """What is said of each, newest first; nothing of one that is deleted meanwhile."""
+        said = list[T]()
+        for study in self.all():
+            with contextlib.suppress(NoSuchStudy):
+                said.append(describe(study))
+        return said
 
     def unreadable(self) -> dict[str, str]:
         """Studies whose definition this program does not understand, and why, by id."""
@@ -128,7 +132,7 @@ class StudyStore:
         listed = {record.id: record for record in self._catalogue.studies.all()}
         if listed.keys() - ids:
             self._catalogue.studies.keep_only(ids)
-        for record in map(_record, self.all()):
+        for record in self.described(_record):
             if listed.get(record.id) != record:
                 self._catalogue.studies.put(record)
         return len(ids)
@@ -141,6 +145,14 @@ class StudyStore:
 
         with contextlib.suppress(CatalogueError):
             self._catalogue.studies.put(_record(study))
+
+
+def _lay_out(folder: Path, definition: StudyDefinition) -> None:
+    """The definition comes last: with it there is a study. Raises OSError, `StudyStoreError`."""
+    definition_file.save_for_people(folder, definition)
+    mark = definition_file.mark_of(definition.to_json())
+    write_condition(folder, Condition("planned", datetime.now(UTC).isoformat(), definition=mark))
+    definition_file.save(folder, definition)
 
 
 def _record(study: Study) -> StudyRecord:

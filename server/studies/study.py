@@ -21,6 +21,7 @@ from server.studies.condition import (
     read_condition,
     write_condition,
 )
+from server.studies.definition_file import require_unchanged
 from server.studies.errors import StudyStoreError
 from server.studies.results_file import Book, Results, cannot_write, new_rows
 
@@ -53,7 +54,7 @@ class Study:
 
     @property
     def condition(self) -> Condition:
-        """A study that says "running" while nobody carries it out was interrupted."""
+        """A study that says "running" while nobody carries it out was interrupted. Raises `NoSuchStudy`."""
         found = read_condition(self.folder)
         if found.state == "running" and not is_claimed(self.folder):
             return replace(found, state="interrupted", reason=PROGRAM_ENDED)
@@ -66,6 +67,11 @@ class Study:
     @property
     def reason(self) -> str:
         return self.condition.reason
+
+    @property
+    def is_complete(self) -> bool:
+        """Finished, and all its rows are still there."""
+        return self.state == "finished" and not self.definition.plan().next(self.results())
 
     @property
     def created_at(self) -> datetime:
@@ -119,7 +125,9 @@ class Study:
         """
         claim = Claim(self.folder, self.definition.name)
         try:
-            carrying = Carrying(Book(self._path), read_condition(self.folder))
+            before = read_condition(self.folder)
+            require_unchanged(self.folder, before.definition)
+            carrying = Carrying(Book(self._path), before)
             try:
                 self._carrying = carrying
                 self._become(replace(carrying.before, state="running", reason=""))
@@ -141,10 +149,12 @@ class Study:
 
 
 class Carrying:
-    """A study while somebody carries it out. before: in which condition it was."""
+    """A study while somebody carries it out. before: in which condition it was; failed runs that ended it count no
+    more."""
 
     def __init__(self, book: Book, before: Condition) -> None:
-        self.before = before
+        pardoned = len(book.done) if before.state == "failed" else before.pardoned
+        self.before = replace(before, pardoned=pardoned)
         self._book = book
         self._began = time.monotonic()
         self._state: StudyState = "interrupted"

@@ -6,9 +6,18 @@ import random
 import pytest
 from planning_bench import best_geometric, one_eight, walker
 
-from control.controllers.gradient import CONVERGED, Cost, cost_by_rate, cost_value, descend, look_ahead
+from control.controllers.gradient import (
+    CONVERGED,
+    Cost,
+    cost_by_rate,
+    cost_value,
+    descend,
+    is_other_lower,
+    look_ahead,
+    lowest_on,
+)
 from control.gait import Gait
-from control.model import Pose, wrap
+from control.model import Pivot, Pose, opposite, wrap
 from control.trajectories import trajectories
 
 RNG = random.Random(4)
@@ -61,6 +70,26 @@ def test_the_descent_never_leaves_the_limits_and_never_climbs() -> None:
             rate = descend(cost, 1.0, start, MAX_RATE)
             assert -MAX_RATE <= rate <= MAX_RATE
             assert cost_value(cost, rate, 1.0) <= cost_value(cost, start, 1.0) + 1e-12
+
+
+def chosen(cost: Cost, pivot: Pivot) -> tuple[Pivot, float]:
+    """What the law takes where it may: pivot and rate, rad/s."""
+    lowest, rate = lowest_on(cost, pivot, MAX_RATE)
+    end, other_rate = lowest_on(cost, opposite(pivot), MAX_RATE)
+    return (opposite(pivot), other_rate) if is_other_lower(end, lowest, pivot) else (pivot, rate)
+
+
+@pytest.mark.parametrize("pivot", [1, -1])
+@pytest.mark.parametrize("bearing", [0.0, 0.5 * math.pi, -0.5 * math.pi, math.pi])
+def test_what_lies_symmetrically_is_not_told_apart_by_the_last_digits(bearing: float, pivot: Pivot) -> None:
+    for cost in COSTS:
+        x = cost.x + 0.003 * math.cos(cost.heading + bearing)
+        y = cost.y + 0.003 * math.sin(cost.heading + bearing)
+        cost = cost._replace(desired_x=x, desired_y=y, weight=0.0)
+        expected = chosen(cost, pivot)
+        for heading in (cost.heading - 1e-14, cost.heading + 1e-14):
+            taken, rate = chosen(cost._replace(heading=heading), pivot)
+            assert (taken, rate) == (expected[0], pytest.approx(expected[1], abs=1e-9))
 
 
 def test_the_look_ahead_follows_from_the_sweep() -> None:

@@ -11,9 +11,9 @@ import pytest
 from control import plugins
 from control.controllers import controllers
 from control.studies import crews, dask_crew
-from control.studies.arithmetic import ABSENT, ground
+from control.studies.arithmetic import ABSENT, SOURCES, ground, text_of
 from control.studies.batch import simulate
-from control.studies.chunks import WorkersLost, chunk_of, work
+from control.studies.chunks import PluginFile, WorkersLost, chunk_of, work
 from control.studies.definition import StudyDefinition
 from control.studies.workers import CHUNK, MOST, Failed, Pace, carry_out, hired
 
@@ -115,10 +115,37 @@ def test_a_worker_that_would_round_differently_is_refused_by_name():
     ).differences(ground())
 
 
+def test_a_worker_whose_sources_were_edited_since_is_another_one(tmp_path):
+    assert ("pivotrig's source text", text_of(SOURCES)) in ground().versions
+    law = tmp_path / "controllers" / "law.py"
+    law.parent.mkdir()
+    law.write_text("GAIN = 3.0")
+    before = text_of(tmp_path)
+    law.write_text("GAIN = 4.0")
+    assert text_of(tmp_path) != before
+
+
 def test_a_plug_in_that_a_worker_does_not_have_is_named(tmp_path):
-    chunk = dataclasses.replace(chunk_of(tuple(runs(1))), plugins=(str(tmp_path / "mine.py"),))
+    chunk = dataclasses.replace(
+        chunk_of(tuple(runs(1))), plugins=(PluginFile(str(tmp_path / "mine.py"), ""),)
+    )
     with pytest.raises(WorkersLost, match=r"cannot use a plug-in: there is no plug-in file .*mine.py"):
         work(chunk)
+
+
+def test_a_worker_that_has_an_older_text_of_a_plug_in_is_refused(tmp_path):
+    mine = tmp_path / "deadly.py"
+    mine.write_text(DEADLY)
+    plugins.load_file(mine)
+    try:
+        chunk = chunk_of(tuple(runs(1)))
+        assert [plugin.path for plugin in chunk.plugins] == [str(mine)]
+        work(chunk)
+        edited = dataclasses.replace(chunk.plugins[0], text=chunk.plugins[0].text[::-1])
+        with pytest.raises(WorkersLost, match=r"another text of the plug-in .*deadly.py .*start it again"):
+            work(dataclasses.replace(chunk, plugins=(edited,)))
+    finally:
+        controllers.forget("deadly")
 
 
 def test_a_worker_that_dies_is_told_in_words(tmp_path):

@@ -77,7 +77,7 @@ def is_there(pose: Pose, goal: Pose) -> bool:
     return pose.distance_to(goal.x, goal.y) <= 0.5e-3 and turn <= 3.0
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=12, deadline=None)
 @given(poses, poses, st.integers(0, 1000))
 def test_a_slipping_robot_comes_from_anywhere_to_any_pose_inside_the_workspace(
     start: Pose, goal: Pose, seed: int
@@ -90,7 +90,7 @@ def test_a_slipping_robot_comes_from_anywhere_to_any_pose_inside_the_workspace(
     assert all(max(abs(pose.x), abs(pose.y)) <= EDGE + SOFT_MARGIN for pose in way)
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=8, deadline=None)
 @given(poses, st.floats(-5e-3, 5e-3), st.floats(-5e-3, 5e-3), st.floats(-0.8, 0.8))
 def test_what_nobody_told_it_of_the_slip_it_learns_on_the_way(
     goal: Pose, dx: float, dy: float, turn: float

@@ -16,7 +16,7 @@ from server.assembly import build_machine
 from server.settings import RigFile
 from tests.faults.fault_bench import FaultBench, electrics_of, fault_bench
 from tests.faults.invariants import Electrics, nothing_left_behind
-from tests.processes import started
+from tests.processes import poll, started
 
 
 @pytest.fixture
@@ -51,16 +51,22 @@ class SeparateBoard:
         return path
 
     def samples_for(self, duration: float) -> list[Sample]:
-        """What the board does in the next `duration` seconds, and has done since the last look."""
+        """What the board does in the next `duration` seconds, and has done since the last look; at least one sample."""
         time.sleep(duration)
-        return self.monitor.take()
+        return self._some()
 
     @property
     def milliseconds(self) -> int:
-        """The board's own time; waits for its next millisecond where all before it have been taken."""
-        while not (samples := self.monitor.take()):
-            time.sleep(0.001)
-        return samples[-1].milliseconds
+        """The board's own time."""
+        return self.newest.milliseconds
+
+    @property
+    def newest(self) -> Sample:
+        return self._some()[-1]
+
+    def _some(self) -> list[Sample]:
+        """What has not been taken yet; waits for the board's next millisecond where that is nothing."""
+        return poll(self.monitor.take, bool)
 
 
 @contextmanager

@@ -142,4 +142,4 @@ def test_consent_and_readings_may_come_through_one_pipe(rig: Path, board: Separa
     )
     poll(lambda: board.monitor.state()["state"], lambda state: state == "stopped")
     time.sleep(0.05)
-    assert not is_driven(board.monitor.take()[-1])
+    assert not is_driven(board.newest)

@@ -114,7 +114,7 @@ def test_a_signal_stops_the_coils_before_anybody_is_sent_away(
         assert stopped is not None
         assert stopped - began <= AT_ONCE
         assert stopped < min(viewers.left), "zero first, then the viewers"
-        assert not any(board.monitor.take()[-1].duty)
+        assert not any(board.newest.duty)
 
 
 def test_a_second_ctrl_c_does_not_put_the_coils_on_again(
@@ -131,7 +131,7 @@ def test_a_second_ctrl_c_does_not_put_the_coils_on_again(
         server.process.wait(10)
         assert time.monotonic() - began <= GONE_WITHIN
         time.sleep(0.1)
-        assert not any(board.monitor.take()[-1].duty)
+        assert not any(board.newest.duty)
 
 
 @pytest.mark.parametrize("last_signal", [signal.SIGINT, signal.SIGTERM])
@@ -155,4 +155,4 @@ def test_a_run_from_the_command_line_stops_its_coils_first_too(
     stopped = tap.first(Stop, began)
     assert stopped is not None
     assert stopped - began <= AT_ONCE
-    assert not any(board.monitor.take()[-1].duty)
+    assert not any(board.newest.duty)

@@ -14,7 +14,7 @@ import pytest
 
 from control.studies.definition import StudyDefinition
 from server.studies.study import RESULTS, Study
-from tests.server.campaign_bench import SHORT, CampaignBench, indices
+from tests.server.campaign_bench import HERE, SHORT, CampaignBench, indices
 
 PATIENCE = 200.0
 """Seconds that a program may take to start and to walk two short runs, on a computer that has much else to do."""
@@ -30,7 +30,7 @@ def bench(tmp_path: Path) -> Iterator[CampaignBench]:
 @contextmanager
 def walking(bench: CampaignBench, runs: int, **changes: Any) -> Iterator[subprocess.Popen[bytes]]:
     """`pivotrig study` on the simulated rig, once so many runs of it have begun."""
-    definition = StudyDefinition.from_json({**SHORT, **changes})
+    definition = StudyDefinition.from_json({**SHORT, **HERE, **changes})
     file = bench.data / "study.toml"
     file.write_text(definition.to_toml(), encoding="utf-8")
     command = [sys.executable, "-m", "server", "study", str(file), "--data", str(bench.data), "--json"]
@@ -77,7 +77,7 @@ def test_a_killed_campaign_goes_on_with_the_run_that_was_on(bench: CampaignBench
 def test_a_campaign_that_is_told_to_end_stops_the_coils_and_can_be_resumed(bench: CampaignBench) -> None:
     with walking(bench, runs=1, duration_s=20.0) as process:
         process.terminate()
-        answer, _ = process.communicate(timeout=30)
+        answer, _ = process.communicate(timeout=PATIENCE)
         assert b'"interrupted"' in answer
     study = the_study(bench)
     assert (study.state, study.reason) == ("interrupted", "the program was ended")

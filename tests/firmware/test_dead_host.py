@@ -53,7 +53,7 @@ class Watched:
 
     def samples_for(self, duration: float) -> list[Sample]:
         time.sleep(duration)
-        return self._monitor.take()
+        return poll(self._monitor.take, bool)
 
     def until_driven(self, share: float) -> None:
         """Until a coil carries that share of what it may."""
@@ -61,7 +61,7 @@ class Watched:
 
     def expect_zero(self) -> None:
         """The invariants, from now on, of a board whose host has just died."""
-        died = self._monitor.take()[-1].milliseconds
+        died = self.samples_for(0.0)[-1].milliseconds
         samples = self.samples_for(0.5)
         check_limits(samples, ELECTRICS)
         zero = check_zero(Trace(samples), ELECTRICS, died + ON_ITS_WAY)

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from control.model import Pose, wrap
+from control.model import Pose, Tracking, wrap
 from control.simulation.board import TwinBoard
 from control.snapshot import RigState, Snapshot
 from control.studies.definition import StudyDefinition
@@ -31,9 +31,15 @@ SHORT: dict[str, Any] = {
     "gait": {"sweep_deg": 20.0}, "rig": {"rest_s": 0.1}, "axes": [{"of": "gait.tilt_deg", "values": [20, 25, 30]}],
 }  # fmt: skip
 """Three runs of 0.6 s, which take the robot a few millimetres away."""
+HERE: dict[str, Any] = {"start": {"x_mm": 0.0, "y_mm": -42.0, "heading_deg": 90.0}}
+"""The start where the simulated robot is put: no way back is walked to the first run."""
 
 
-class AttendedOperator(HeadlessOperator):
+class BenchOperator(HeadlessOperator):
+    campaign: Campaign
+
+
+class AttendedOperator(BenchOperator):
     """Somebody is there: the test, which looks at every tick."""
 
     is_attended = True
@@ -44,13 +50,16 @@ class Sitting:
     """One campaign while it goes on, and what was seen of it.
 
     starts: where the robot truly was when each run began.  words: what the campaign said.  driven_while_held: ticks
-    of a hold, but the first, at which the coils were driven.
+    of a hold, but the first, at which the coils were driven.  seen_for: how long the robot had been seen when a hold
+    ended, s.
     """
 
     machine: Machine
     starts: list[Pose] = field(default_factory=list)
     words: list[str] = field(default_factory=list)
     driven_while_held: int = 0
+    seen_for: list[float] = field(default_factory=list)
+    seen_since: float = 0.0
     was_held: bool = False
     campaign: Campaign | None = None
     run: str = ""
@@ -64,6 +73,10 @@ class Sitting:
         self.run = run
         if snapshot.rig is RigState.HELD and self.was_held and not self.board.drive_is_zero:
             self.driven_while_held += 1
+        if snapshot.tracking is not Tracking.LOCKED:
+            self.seen_since = snapshot.time
+        if self.was_held and snapshot.rig is RigState.ARMED:
+            self.seen_for.append(snapshot.time - self.seen_since)
         self.was_held = snapshot.rig is RigState.HELD
 
     def hear(self, activity: Activity) -> None:
@@ -115,7 +128,12 @@ class CampaignBench:
         return self.store.create(StudyDefinition.from_json({**SHORT, **changes}))
 
     def sit(
-        self, study: Study, watch: Watch | None = None, *, attended: bool = False
+        self,
+        study: Study,
+        watch: Watch | None = None,
+        *,
+        attended: bool = False,
+        kind: type[BenchOperator] = BenchOperator,
     ) -> tuple[Outcome, Sitting]:
         """Carry a study out, or on. watch: sees each tick, and may do what a person may."""
         machine = build_machine(RigFile().with_simulation(seed=3), realtime=False)
@@ -126,9 +144,9 @@ class CampaignBench:
             if watch is not None:
                 watch(sitting, snapshot)
 
-        kind = AttendedOperator if attended else HeadlessOperator
-        operator = kind(machine, self.archive.recorder, see)
+        operator = (AttendedOperator if attended else kind)(machine, self.archive.recorder, see)
         sitting.campaign = Campaign(study, operator, self.archive.catalogue, sitting.hear)
+        operator.campaign = sitting.campaign
         outcome = sitting.campaign.run()
         for run in self.runs(study):
             self.archive.recorder.written(run.id, 30.0)

@@ -10,7 +10,6 @@ from control.studies.definition import StudyDefinition
 from server.app import create_app
 from server.archive import Archive
 from server.assembly import build_machine
-from server.catalogue.records import RunQuery
 from server.rig import Rig
 from server.settings import RigFile
 from server.studies.campaign import Campaign
@@ -73,21 +72,26 @@ async def bench(serve, tmp_path):
         yield Bench(rig, archive, api)
 
 
-async def test_a_campaign_has_the_rig_to_itself_and_leaves_it_disarmed(bench):
-    study = bench.study(duration_s=4.0)
+async def test_a_campaign_has_the_rig_to_itself_but_for_a_pause_and_leaves_it_disarmed(bench):
+    study = bench.study(duration_s=6.0, axes=[{"of": "gait.tilt_deg", "values": [25]}])
     campaign, ended = bench.begin(study)
-    await bench.until_said("run 1 of 2: walking")
+    await bench.until_said("run 1 of 1: walking")
+    paused = await bench.api.post("/runs/current/pause")
+    assert paused.status_code == 200, paused.text
     words = "the study 'short' is running; stop it first"
     assert await bench.refused("POST", "/runs", {}) == words
     assert await bench.refused("POST", "/manual", {"pivot": 1, "rate_deg_s": 20.0}) == words
     assert await bench.refused("PATCH", "/rig", {"robot": {"length_mm": 11.0}})
+    assert bench.rig.snapshot.rig is RigState.HELD, "only a person resumes what a person has paused"
+    assert (await bench.api.post("/runs/current/resume")).status_code == 200
     outcome = await asyncio.wait_for(ended, PATIENCE)
     assert outcome.state == study.state == "finished", outcome
-    assert [row.state for row in study.rows()] == ["finished", "finished"]
+    (row,) = study.rows()
+    assert (row.state, row.attempts) == ("finished", 1)
     assert bench.rig.snapshot.rig is RigState.DISARMED
-    listed = {run["id"]: run for run in (await bench.api.get(f"/runs?study={study.id}")).json()["runs"]}
-    assert set(listed) == {row.run_id for row in study.rows()}
-    assert campaign.activity.words == "run 2 of 2: finished"
+    (listed,) = (await bench.api.get(f"/runs?study={study.id}")).json()["runs"]
+    assert listed["id"] == row.run_id
+    assert campaign.activity.words == "run 1 of 1: finished"
     assert (await bench.api.post("/arm")).status_code == 200, "it is free again"
 
 
@@ -119,23 +123,40 @@ async def test_a_stopped_campaign_goes_on_once_a_person_has_reset_the_rig(bench)
     _, ended = bench.begin(study)
     await bench.until_said("waiting for a person: reset and arm the rig (emergency stop)")
     await bench.api.post("/reset")
+    await bench.until_said("waiting for a person: arm the rig")
+    assert bench.rig.snapshot.rig is RigState.DISARMED, "a reset is no consent"
+    await bench.api.post("/arm")
     outcome = await asyncio.wait_for(ended, PATIENCE)
     assert outcome.state == "finished", outcome
     assert before in study.rows()
     assert len(study.rows()) == 2
 
 
-async def test_a_paused_run_of_a_campaign_is_resumed_by_a_person(bench):
-    study = bench.study(duration_s=6.0)
-    _, ended = bench.begin(study)
-    await bench.until_said("run 1 of 2: walking")
-    paused = await bench.api.post("/runs/current/pause")
-    assert paused.status_code == 200, paused.text
-    await asyncio.sleep(0.2)
-    assert bench.rig.snapshot.rig is RigState.HELD
-    assert (await bench.api.post("/runs/current/resume")).status_code == 200
-    assert (await asyncio.wait_for(ended, PATIENCE)).state == "finished"
-    assert len(bench.archive.catalogue.page(RunQuery(study=study.id)).runs) == 2
+async def test_a_stop_that_comes_before_a_campaign_has_the_rig_counts(bench):
+    """Between the request and the rig there are threads and files."""
+    study = bench.study()
+    operator = RigOperator(bench.rig, consent=True)
+    assert (await bench.api.post("/disarm")).status_code == 200
+    states = set()
+    with bench.rig.watched(lambda snapshot: states.add(snapshot.rig)):
+        campaign = Campaign(study, operator, bench.archive.catalogue)
+        outcome = await asyncio.wait_for(asyncio.to_thread(campaign.run), PATIENCE)
+    assert (outcome.state, outcome.reason) == ("stopped", "the operator disarmed the rig")
+    assert states == {RigState.DISARMED}
+
+
+async def test_a_run_that_somebody_else_has_begun_is_not_the_campaigns_to_resume(bench):
+    async with asyncio.timeout(PATIENCE):
+        while (await bench.api.post("/arm")).status_code != 200:
+            await asyncio.sleep(0.05)
+    assert (await bench.api.post("/runs", json={})).status_code == 201
+    assert (await bench.api.post("/runs/current/pause")).status_code == 200
+    _, ended = bench.begin(bench.study())
+    outcome = await asyncio.wait_for(ended, PATIENCE)
+    assert outcome.state == "interrupted"
+    assert outcome.reason.startswith("a run is held; let it come to its end, or stop it")
+    assert bench.rig.snapshot.rig is RigState.HELD, "it is as it was"
+    assert bench.rig.snapshot.run is not None
 
 
 async def test_a_way_back_can_be_paused_and_looked_at_though_it_is_no_run(bench):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -10,10 +10,13 @@ import pytest
 
 from control.coil_heat import CoilHeat
 from control.gait import Gait
+from control.loop import ControlLoop
+from control.runs import RunRequest
+from control.safety import ENERGISED
 from control.snapshot import RigState, Snapshot
 from control.studies.definition import StudyDefinition
 from server.studies.campaign.way_back import ID as WAY_BACK
-from tests.server.campaign_bench import CampaignBench, Sitting
+from tests.server.campaign_bench import HERE, BenchOperator, CampaignBench, Sitting
 
 ONE_RUN: dict[str, Any] = {"axes": [{"of": "gait.tilt_deg", "values": [25]}]}
 
@@ -52,8 +55,8 @@ class Person:
 def test_after_a_disarm_a_campaign_waits_for_a_person_and_then_goes_on_by_itself(
     bench: CampaignBench,
 ) -> None:
-    study = bench.study(**ONE_RUN)
-    person = Person(comes_after=3.0)
+    study = bench.study(**ONE_RUN, **HERE)
+    person = Person(comes_after=1.5)
     outcome, sitting = bench.sit(study, person, attended=True)
     assert outcome.state == "finished"
     assert person.has_come
@@ -64,7 +67,7 @@ def test_after_a_disarm_a_campaign_waits_for_a_person_and_then_goes_on_by_itself
 
 
 def test_a_campaign_waits_for_a_person_only_so_long(bench: CampaignBench) -> None:
-    study = bench.study(**ONE_RUN, rig={"rest_s": 0.1, "wait_minutes": 0.05})
+    study = bench.study(**ONE_RUN, **HERE, rig={"rest_s": 0.1, "wait_minutes": 0.05})
     outcome, _ = bench.sit(study, Person(comes_after=60.0), attended=True)
     assert outcome.state == study.state == "stopped"
     assert outcome.reason.startswith("waited for 0.05 min: waiting for a person: arm the rig")
@@ -72,7 +75,7 @@ def test_a_campaign_waits_for_a_person_only_so_long(bench: CampaignBench) -> Non
 
 
 def test_where_nobody_can_come_a_disarm_ends_the_campaign_and_it_can_be_resumed(bench: CampaignBench) -> None:
-    study = bench.study(**ONE_RUN)
+    study = bench.study(**ONE_RUN, **HERE)
     outcome, _ = bench.sit(study, Person(comes_after=60.0))
     assert outcome.state == "stopped"
     assert outcome.reason.startswith("a person must arm the rig")
@@ -81,7 +84,7 @@ def test_where_nobody_can_come_a_disarm_ends_the_campaign_and_it_can_be_resumed(
 
 
 def test_an_emergency_stop_ends_the_campaign(bench: CampaignBench) -> None:
-    study = bench.study(**ONE_RUN)
+    study = bench.study(**ONE_RUN, **HERE)
 
     def stop(sitting: Sitting, snapshot: Snapshot) -> None:
         if sitting.run and snapshot.run is not None and snapshot.run.elapsed > 0.2:
@@ -94,8 +97,42 @@ def test_an_emergency_stop_ends_the_campaign(bench: CampaignBench) -> None:
     assert study.rows() == []
 
 
+class JustInTime(BenchOperator):
+    """The operator's stop comes after the campaign has decided to arm the rig, and before the rig hears of that."""
+
+    def do(self, act: Callable[[ControlLoop], Any]) -> Any:
+        if self._loop.state is RigState.DISARMED and not self._loop.obstacle:
+            self.campaign.stop("stopped by the operator")
+        return super().do(act)
+
+
+class JustBeforeTheRun(BenchOperator):
+    """The same, with a run."""
+
+    def start(self, request: RunRequest, permit: Callable[[], None]) -> str:
+        self.campaign.stop("stopped by the operator")
+        return super().start(request, permit)
+
+
+@pytest.mark.parametrize(("kind", "driven"), [(JustInTime, set()), (JustBeforeTheRun, {""})])
+def test_a_stop_counts_before_what_is_on_its_way_to_the_rig(
+    bench: CampaignBench, kind: type[BenchOperator], driven: set[str]
+) -> None:
+    study = bench.study(**ONE_RUN, **HERE)
+    seen: set[str] = set()
+
+    def watch(_: Sitting, snapshot: Snapshot) -> None:
+        if snapshot.rig in ENERGISED:
+            seen.add("" if snapshot.run is None else snapshot.run.id)
+
+    outcome, _ = bench.sit(study, watch, kind=kind)
+    assert (outcome.state, outcome.reason) == ("stopped", "stopped by the operator")
+    assert seen == driven
+    assert bench.runs(study) == []
+
+
 def test_a_run_that_a_person_pauses_goes_on_when_it_is_resumed_and_counts_once(bench: CampaignBench) -> None:
-    study = bench.study(**ONE_RUN)
+    study = bench.study(**ONE_RUN, **HERE)
     paused_at: list[float] = []
 
     def pause(sitting: Sitting, snapshot: Snapshot) -> None:
@@ -104,7 +141,7 @@ def test_a_run_that_a_person_pauses_goes_on_when_it_is_resumed_and_counts_once(b
         if not paused_at and snapshot.run.elapsed > 0.2:
             sitting.machine.loop.pause()
             paused_at.append(snapshot.time)
-        elif snapshot.rig is RigState.HELD and snapshot.time > paused_at[0] + 2.0:
+        elif snapshot.rig is RigState.HELD and snapshot.time > paused_at[0] + 1.0:
             sitting.machine.loop.resume()
 
     outcome, _ = bench.sit(study, pause, attended=True)
@@ -123,7 +160,7 @@ def test_a_campaign_rests_with_the_coils_off_until_they_are_cool(bench: Campaign
         nonlocal driven_while_cooling
         is_back = snapshot.run is not None and snapshot.run.id == WAY_BACK
         if is_back and not sitting.has_said("cool"):
-            sitting.machine.loop.coil_heat = CoilHeat((0.1, 0.604, 0.1))
+            sitting.machine.loop.coil_heat = CoilHeat((0.1, 0.6005, 0.1))
         driven_while_cooling += sitting.was_held and not sitting.board.drive_is_zero
         if sitting.run and not hottest_at_start:
             hottest_at_start.append(max(snapshot.coil_heat))
@@ -158,7 +195,9 @@ def test_a_full_disk_is_waited_for_and_is_no_attempt(bench: CampaignBench) -> No
     def fill(sitting: Sitting, snapshot: Snapshot) -> None:
         if snapshot.run is not None and not is_full:
             is_full.append(True)
-            sitting.inject("disk_full", duration=6.0)
+            sitting.inject("disk_full")
+        if sitting.has_said("waiting: the run cannot be recorded"):
+            sitting.clear("disk_full")
 
     outcome, sitting = bench.sit(study, fill)
     assert outcome.state == "finished"

@@ -14,6 +14,7 @@ from server.archive import Archive
 from server.assembly import build_machine
 from server.rig import Rig
 from server.settings import RigFile
+from server.studies.store import StudyStore
 
 pytestmark = pytest.mark.anyio
 
@@ -84,6 +85,23 @@ async def test_a_text_that_is_no_toml_and_a_body_that_says_both_are_refused_in_w
     assert both.status_code == 422
 
 
+@pytest.mark.parametrize(
+    "toml",
+    [
+        "seed = 1979-05-27",
+        f"seed = {'9' * 5000}",
+        f"seed = {'[' * 5000}{']' * 5000}",
+        f"{'.'.join('a' * 50_000)} = 1",
+        f"""{'."b c"'.join("a" * 5_000)} = 1""",
+    ],
+    ids=["a date", "an endless number", "endless nesting", "an endless key", "an endless quoted key"],
+)
+async def test_a_hostile_toml_is_refused_in_words_and_at_once(api, toml):
+    told = (await api.post("/studies/preview", json={"toml": toml})).json()["problems"]
+    assert told[0]["message"].startswith("this is no")
+    assert (await api.post("/studies", json={"toml": toml})).status_code == 422
+
+
 async def test_a_batch_is_watched_to_its_end_and_taken_away(api, at, full):
     async with at.socket("/api/v1/telemetry?rate_Hz=1") as telemetry:
         study = await made(api, definition=SHORT)
@@ -114,7 +132,7 @@ async def test_a_batch_is_watched_to_its_end_and_taken_away(api, at, full):
     if full:
         figure = await api.get(f"/studies/{study['id']}/plot.png", timeout=DONE_WITHIN)
         assert figure.content.startswith(b"\x89PNG")
-    await taken_away(api, study["id"])
+    await taken_away(api, study["id"], at.archive.folder.parent / "studies" / study["id"])
 
 
 async def test_what_a_search_has_learned_is_told_by_a_process_of_its_own(api, at):
@@ -146,13 +164,15 @@ async def heard(telemetry, id):
     return told
 
 
-async def taken_away(api, id):
+async def taken_away(api, id, folder):
     table = (await api.get(f"/studies/{id}/table.csv")).text
     rows = list(csv.DictReader(io.StringIO(table)))
     assert [int(row["index"]) for row in rows] == list(range(6))
     report = await api.get(f"/studies/{id}/report", timeout=DONE_WITHIN)
     assert SHORT["name"] in report.text
     assert "style-src 'self' 'unsafe-inline'" in report.headers["content-security-policy"]
+    made_of, page = (folder / name for name in ("results.jsonl", "report/report.html"))
+    assert page.stat().st_mtime_ns == made_of.stat().st_mtime_ns, "rows that come while it is made are seen"
     packed = await api.get(f"/studies/{id}/report.zip")
     with zipfile.ZipFile(io.BytesIO(packed.content)) as file:
         assert file.read("table.csv").decode() == table
@@ -166,28 +186,30 @@ async def taken_away(api, id):
     assert (await api.get("/studies")).json() == {"studies": []}
 
 
-async def test_a_batch_is_stopped_and_resumed_and_goes_on_under_the_next_server_when_this_one_ends(
-    tmp_path, serve
-):
+async def test_a_batch_is_stopped_and_resumed(api):
+    study = await made(api, definition=LONG, jobs=1)
+    refused = await api.post("/studies", json={"definition": SHORT})
+    assert refused.status_code == 409
+    assert "'long'" in refused.json()["detail"]
+    assert (await api.delete(f"/studies/{study['id']}")).status_code == 409
+    done = (await until_more(api, study["id"], 0))["done"]
+
+    stopped = (await api.post(f"/studies/{study['id']}/stop", timeout=DONE_WITHIN)).json()
+    assert stopped["state"] == "stopped"
+    assert done <= stopped["done"] < stopped["total"]
+    resumed = (await api.post(f"/studies/{study['id']}/resume", json={"jobs": 1})).json()
+    assert resumed["state"] == "running"
+    await api.post(f"/studies/{study['id']}/stop", timeout=DONE_WITHIN)
+    assert (await api.delete(f"/studies/{study['id']}")).status_code == 204
+
+
+async def test_a_batch_that_its_server_leaves_behind_is_interrupted_and_keeps_its_runs(tmp_path, serve):
     async with serve(application(tmp_path)) as at, client_of(at) as api:
         study = await made(api, definition=LONG, jobs=1)
-        refused = await api.post("/studies", json={"definition": SHORT})
-        assert refused.status_code == 409
-        assert "'long'" in refused.json()["detail"]
-        assert (await api.delete(f"/studies/{study['id']}")).status_code == 409
         done = (await until_more(api, study["id"], 0))["done"]
-
-        stopped = (await api.post(f"/studies/{study['id']}/stop")).json()
-        assert stopped["state"] == "stopped"
-        assert done <= stopped["done"] < stopped["total"]
-        resumed = (await api.post(f"/studies/{study['id']}/resume", json={"jobs": 1})).json()
-        assert resumed["state"] == "running"
-        await until_more(api, study["id"], stopped["done"])
-    async with serve(application(tmp_path)) as at, client_of(at) as api:
-        left = (await api.get("/studies")).json()["studies"][0]
-        assert (left["state"], left["current"]) == ("interrupted", "")
-        assert left["done"] > stopped["done"]
-        assert (await api.delete(f"/studies/{study['id']}")).status_code == 204
+    left = StudyStore(tmp_path).open(study["id"])
+    assert left.state == "interrupted"
+    assert left.tally().done >= done
 
 
 def application(data):

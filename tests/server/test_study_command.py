@@ -133,14 +133,12 @@ def test_a_run_that_raises_is_a_failed_row_and_several_in_a_row_end_a_study(pivo
 
 
 def test_a_study_goes_on_past_failed_runs_where_its_rule_says_so(pivotrig, file, plugin):
-    controller_of = {"of": "controller", "values": ["clueless", "geometric"]}
-    changed(
-        file, controller={"name": "geometric"}, axes=[controller_of], repeats=4, stop={"failed_in_a_row": 0}
-    )
+    controller_of = {"of": "controller", "values": ["clueless", "straight"]}
+    changed(file, axes=[controller_of], repeats=4, order="listed", stop={"failed_in_a_row": 0})
     status, out, _ = pivotrig("study", file, "--jobs", 1, "--json", "--plugin", plugin)
     result = json.loads(out)
     assert (status, result["state"], result["runs"], result["failed"]) == (0, "finished", 8, 4)
-    assert result["best"]["values"] == {"controller": "geometric"}
+    assert result["best"]["values"] == {"controller": "straight"}
 
 
 def test_studies_are_listed_shown_taken_away_and_deleted(pivotrig, file, tmp_path):
@@ -154,6 +152,9 @@ def test_studies_are_listed_shown_taken_away_and_deleted(pivotrig, file, tmp_pat
     assert out.encode() == study.table().csv()
     status, out, _ = pivotrig("studies", "resume", "last", "--json")
     assert (status, json.loads(out)["state"]) == (0, "finished")
+    (study.folder / "results.jsonl").unlink()
+    _, out, _ = pivotrig("studies", "resume", "last", "--jobs", 1, "--json")
+    assert (json.loads(out)["state"], json.loads(out)["runs"]) == ("finished", 6)
     status, out, _ = pivotrig("studies", "delete", "last", "--yes")
     assert (status, out.strip()) == (0, f"deleted: {study.id}")
     status, _, err = pivotrig("studies", "show", "last")

@@ -136,6 +136,7 @@ def test_no_worker_outlives_a_command_that_is_killed(mortal, tmp_path):
     os.kill(process, signal.SIGKILL)
     mortal.exit_code()
     until(lambda: not session_of(process))
+    assert json.loads((study.folder / "state.json").read_bytes())["state"] == "running"  # as it was killed
     assert (study.state, study.reason) == ("interrupted", "the program that carried it out was ended")
 
 
@@ -151,14 +152,11 @@ def test_ctrl_c_leaves_a_study_that_goes_on_with_other_workers(mortal, expected,
     assert study.table().csv() == expected
 
 
-@pytest.mark.parametrize(
-    ("sent", "state"),
-    [(signal.SIGINT, "stopped"), (signal.SIGTERM, "interrupted"), (signal.SIGHUP, "interrupted")],
-)
-def test_a_signal_ends_a_study_in_order(mortal, tmp_path, sent, state):
+@pytest.mark.parametrize("sent", [signal.SIGTERM, signal.SIGHUP])
+def test_a_polite_end_interrupts_a_study_in_order(mortal, tmp_path, sent):
     study = begun(tmp_path)
     process = mortal.start("studies", "resume", study.id, "--data", tmp_path, "--jobs", 1)
     until(lambda: written(study))
     os.kill(process, sent)
     assert mortal.exit_code() == 1
-    assert study.state == state
+    assert json.loads((study.folder / "state.json").read_bytes())["state"] == study.state == "interrupted"

@@ -1,10 +1,7 @@
 """What is kept of a study is there whole or not at all, for one who carries it out and many who look."""
 
-import json
 import resource
 import shutil
-import subprocess
-import sys
 from contextlib import contextmanager
 
 import pytest
@@ -128,18 +125,6 @@ def test_one_at_a_time_carries_a_study_out(study):
 def test_rows_are_taken_from_who_carries_it_out_alone(study):
     with pytest.raises(StudyStoreError, match="from who carries it out"):
         study.append(study.rows()[0])
-
-
-def test_what_says_that_it_is_running_while_its_program_is_dead_was_interrupted(study):
-    die = f"""
-import os, pathlib
-from server.studies.store import StudyStore
-with StudyStore(pathlib.Path({str(study.folder.parents[1])!r})).open({study.id!r}).claimed():
-    os._exit(1)
-"""
-    subprocess.run([sys.executable, "-c", die], check=False)
-    assert json.loads((study.folder / "state.json").read_bytes())["state"] == "running"
-    assert (study.state, study.reason) == ("interrupted", "the program that carried it out was ended")
 
 
 @contextmanager

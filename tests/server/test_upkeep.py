@@ -57,7 +57,7 @@ async def test_after_the_start_what_is_torn_is_mended_and_what_is_too_much_delet
     os.truncate(archive.path_of("torn"), archive.path_of("torn").stat().st_size * 2 // 3)
     archive.catalogue.update("torn", pinned=True, state="running", recording_state="writing")
     rig = Rig(build_machine(KEEPS_NOTHING, realtime=True), recorder=archive.recorder)
-    async with serve(create_app(rig, archive)), rig.announcements.subscribe() as messages:
+    async with rig.announcements.subscribe() as messages, serve(create_app(rig, archive)):
         await told(rig, "torn")
         await pages_hear(messages, "listed")
         await gone(archive, "loose")

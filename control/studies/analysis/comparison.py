@@ -30,7 +30,8 @@ class Order(StrEnum):
 @dataclass(frozen=True, slots=True)
 class Comparison:
     """one, other: values of the axis.  fixed: values of the other axes.  difference: mean of one less that of other,
-    Welch's interval.  runs that do not scatter leave nothing unsure.  p_welch, p_ranks: Welch's t and Mann and Whitney's test.
+    Welch's interval; runs that do not scatter leave nothing unsure.  p_welch, p_ranks: Welch's t and Mann and
+    Whitney's test.
     effect: Hedges' g.  below: chance that a run of one has the smaller value, ties half.
     """
 

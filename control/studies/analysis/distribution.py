@@ -21,8 +21,8 @@ REFUSED = 0.05
 @dataclass(frozen=True, slots=True)
 class Distribution:
     """values: the finished runs', ascending.  mean: with Student's interval.  deviation: of single runs, with
-    Bonett's interval.  weibull, located: None for too few runs.  preference: Akaike's criterion (corrected for few values)
-    of each law less that of the best one; 0 is best, more than 4 clearly worse.
+    Bonett's interval.  weibull, located: None for too few runs.  preference: Akaike's criterion (corrected for few
+    values) of each law less that of the best one; 0 is best, more than 4 clearly worse.
     """
 
     values: Array

@@ -71,7 +71,7 @@ def _found(x: np.ndarray, y: np.ndarray, sets: int, span: float) -> Drift | None
 
 
 def _chance(correlation: float, freedom: int) -> float:
-    """p of a correlation of no effect. Runs less their set's mean are not free: of two they are one another's mirror."""
+    """p without any effect. Runs less their set's mean are not free: two of them are each other's mirror."""
     if abs(correlation) >= 1.0:
         return 0.0
     return 2.0 * float(special.stdtr(freedom, -abs(correlation) * np.sqrt(freedom / (1.0 - correlation**2))))

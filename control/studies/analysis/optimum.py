@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import Any
@@ -48,6 +48,12 @@ class Optimum:
     measured: float
     line_x: Array
     line: Array
+
+    @property
+    def open_ended(self) -> bool:
+        """Whether the interval of the place reaches an end of what was tried."""
+        margin = EDGE * float(self.line_x[-1] - self.line_x[0])
+        return self.where.low <= self.line_x[0] + margin or self.where.high >= self.line_x[-1] - margin
 
 
 def optimum(samples: Samples, axis: str, fixed: Mapping[str, Any] | None = None) -> Optimum | None:

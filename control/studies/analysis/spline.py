@@ -35,7 +35,7 @@ class Smoother:
 
 
 def smoother(x: Array, means: Array, errors: Array) -> Smoother:
-    """x: (k,) ascending, at least 3.  means, errors: (k,) means and their standard errors; where one is 0 or NaN (unknown), the line
+    """x: (k,) ascending, at least 3.  means, errors: (k,) means and their standard errors; if one is 0 or NaN, the line
     goes through every mean."""
     fine = np.linspace(x[0], x[-1], FINE)
     if len(x) < FEWEST_SMOOTHED:

@@ -20,10 +20,6 @@ from control.simulation.plants import Plant
 from control.snapshot import Vector
 from control.walker import Stride
 
-WHOLE_STEPS = 1e-6
-"""A piece that is longer than whole steps by rounding alone, in steps, gets no further one."""
-
-
 RATE = 60.0
 """Ticks per second: the camera's pictures on the shipped rig."""
 TICK = 1.0 / RATE

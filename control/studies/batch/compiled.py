@@ -59,7 +59,7 @@ def prepared(run: PlannedRun) -> Prepared | None:
 
 def walk_prepared(prepared: Prepared) -> Metrics:
     """The figures of the run, as `plain_walk` finds them; raises `RunFailed` like it."""
-    from control.studies.batch.kernel import walk_compiled
+    from control.studies.batch.kernel import walk
 
     run, task, course = prepared.run, prepared.task, prepared.course
     start, setup = start_of(run), run.setup
@@ -70,7 +70,7 @@ def walk_prepared(prepared: Prepared) -> Metrics:
     while True:
         draws += [draw(0.0, 1.0) for _ in range(max(more, len(draws)))]
         robot = _robot(prepared.table, draws, setup.length)
-        outcome = walk_compiled(task, begun, Course(course.points, course.ahead), robot, speed)
+        outcome = walk(task, begun, Course(course.points, course.ahead), robot, speed)
         if outcome.end != UNDRAWN:
             break
     if outcome.end == LEFT:
@@ -83,6 +83,7 @@ def walk_prepared(prepared: Prepared) -> Metrics:
 def _first_draws(course: LaidOut, task: Task) -> int:
     """As many as the run will probably use; twice as many are drawn where they do not suffice."""
     switches = SPARE * course.length / advance_of_sweep(min(task.sweep, math.pi), task.length)
+    switches = min(switches, len(course.points))  # a tick has one at most
     return 2 * DRAWS_OF_A_SWITCH + math.ceil(DRAWS_OF_A_SWITCH * switches)
 
 

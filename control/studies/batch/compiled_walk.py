@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from control.controllers.geometric import nearest_pivot, swing_rate
-from control.controllers.gradient import Cost, gone_on, is_at_rest_too_far, lowest_on
+from control.controllers.gradient import Cost, gone_on, is_at_rest_too_far, is_other_lower, lowest_on
 from control.gait import remaining_turn, sweep_end
 from control.metrics import Sums
 from control.model import PIVOT_A, Pivot, distance, opposite
@@ -128,10 +128,9 @@ def decided_by_gradient(
     cost = Cost(body.x, body.y, body.heading, half, tau, ahead[0], ahead[1], 0.0, 0.0)
     lowest, rate = lowest_on(cost, pivot, task.max_rate)
     if stance.may_switch:
-        other = opposite(pivot)
-        end, other_rate = lowest_on(cost, other, task.max_rate)
-        if end < lowest or (end == lowest and other < pivot):
-            pivot, lowest, rate = other, end, other_rate
+        end, other_rate = lowest_on(cost, opposite(pivot), task.max_rate)
+        if is_other_lower(end, lowest, pivot):
+            pivot, lowest, rate = opposite(pivot), end, other_rate
     if is_at_rest_too_far(cost, lowest, rate, task.sweep):
         rate = gone_on(rate, body.heading - stance.start, task.sweep, tau, task.max_rate)
     return pivot, rate

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import threading
 from collections import OrderedDict
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -62,11 +63,12 @@ def _pace(gait: Gait) -> tuple[object, ...]:
 
 
 class Courses:
-    """Keeps the courses that were used last."""
+    """Keeps the courses that were used last; for any number of threads, as a cluster's workers have them."""
 
     def __init__(self, most_ticks: int = MOST_TICKS) -> None:
         self._most_ticks = most_ticks
         self._kept: OrderedDict[tuple[object, ...], LaidOut] = OrderedDict()
+        self._lock = threading.Lock()
 
     @property
     def ticks(self) -> int:
@@ -75,14 +77,17 @@ class Courses:
 
     def get(self, wanted: Wanted) -> LaidOut | None:
         """None for a course that is too long, or leads to what is no place."""
-        key = wanted.key
-        course = self._kept.get(key) or lay_out(wanted)
-        if course is not None:
-            self._kept[key] = course
-            self._kept.move_to_end(key)
+        with self._lock:
+            course = self._kept.get(wanted.key) or lay_out(wanted)
+            if course is not None:
+                self._keep(wanted.key, course)
+            return course
+
+    def _keep(self, key: tuple[object, ...], course: LaidOut) -> None:
+        self._kept[key] = course
+        self._kept.move_to_end(key)
         while self.ticks > self._most_ticks:
             self._kept.popitem(last=False)
-        return course
 
 
 def lay_out(wanted: Wanted) -> LaidOut | None:

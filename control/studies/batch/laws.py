@@ -11,10 +11,10 @@ import inspect
 
 from numba.extending import register_jitable
 
-from control import backlash, field_model, gait, model, walker
+from control import backlash, field_model, gait, metrics, model, walker
 from control.controllers import geometric, gradient
 from control.simulation import plant, slip
-from control.studies.batch import compiled_field, compiled_robot, compiled_walk
+from control.studies.batch import bench, compiled_field, compiled_robot, compiled_walk
 
 FORMULAS = (
     model.wrap,
@@ -42,6 +42,7 @@ FORMULAS = (
     gradient.distance_from_pivot,
     gradient.descend,
     gradient.lowest_on,
+    gradient.is_other_lower,
     gradient.is_at_rest_too_far,
     gradient.gone_on,
 )
@@ -52,8 +53,10 @@ OWN = (
 )
 MODULES = (
     backlash,
+    bench,
     field_model,
     gait,
+    metrics,
     model,
     walker,
     geometric,

@@ -13,9 +13,7 @@ from server.reports.experiments.truth import Truth
 
 NEAR = 2.5
 """How exactly the paper can tell an angle, deg: half of a step of its studies."""
-RESOLVED = f"within {NEAR:g}°, half a step of the paper's study"
-NARROW = 10.0
-"""An interval of an angle this wide (deg, two of the paper's steps) still says where a minimum lies. A choice."""
+RESOLVED = f"the whole interval within {NEAR:g}°, half a step of the paper's study"
 NORMAL = 1.96
 """Half of an interval in standard errors, for many runs."""
 
@@ -26,7 +24,7 @@ def near(measured: Measured, name: str, angle: float, **fixed: object) -> Truth:
 
 
 def between(measured: Measured, name: str, wanted: tuple[float, float], **fixed: object) -> Truth:
-    """Yes where the interval of the place reaches into `wanted` (deg) and is narrow. No where it does not, and the best
+    """Yes where the interval of the place lies wholly in `wanted` (deg). No where it lies wholly outside, and the best
     level is clearly below the best one in `wanted`: an interval alone would find a place in mere scatter too."""
     low, high = wanted[0] - NEAR, wanted[1] + NEAR
     where = place_of(measured.best(name, **fixed))
@@ -34,7 +32,7 @@ def between(measured: Measured, name: str, wanted: tuple[float, float], **fixed:
         return Truth.OPEN
     if where.low > high or where.high < low:
         return Truth.NO if _is_dearer(measured, name, (low, high), fixed) else Truth.OPEN
-    return Truth.YES if where.high - where.low <= NARROW else Truth.OPEN
+    return Truth.YES if low <= where.low and where.high <= high else Truth.OPEN
 
 
 def place_of(best: Optimum | None) -> Interval | None:
@@ -43,13 +41,13 @@ def place_of(best: Optimum | None) -> Interval | None:
 
 
 def _is_dearer(measured: Measured, name: str, wanted: tuple[float, float], fixed: dict[str, object]) -> bool:
-    """Corrected for the best level having been chosen among all (Bonferroni)."""
+    """Corrected for the best level having been chosen among all (Bonferroni). What was not measured is not dearer."""
     part = measured.only(**fixed)
     means = {level: mean_of_means(part.only(**{name: level}).samples.groups()) for level in part.levels(name)}
     known = {level: mean for level, mean in means.items() if mean.known}
     inside = [mean for level, mean in known.items() if wanted[0] <= level <= wanted[1]]
     if not inside:
-        return len(known) > 0
+        return False
     there, best = (min(some, key=lambda mean: mean.value) for some in (inside, known.values()))
     error = math.hypot(there.half_width, best.half_width) / NORMAL
     if not error > 0.0:

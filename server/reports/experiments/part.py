@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 
 from control.simulation.rigid.tilt_study import TiltPoint, tilt_study
+from control.studies.analysis.intervals import Interval
 from server.reports import page
 from server.reports.experiments import pictures, tilt_claims
 from server.reports.experiments.carrying import Tables
@@ -101,7 +102,8 @@ def widths(found: Scatter) -> Table:
     """Variance and deviation of ME for each set and controller, beside the paper's, whose rows may be inconsistent."""
     header = (
         "controller", "sweep_deg", "tilt_deg", "runs", "ME", "ME_low", "ME_high", "variance", "deviation", "shape",
-        "scale", "p_Weibull", "paper_variance", "paper_deviation", "paper_row",
+        "shape_low", "shape_high", "scale", "scale_low", "scale_high", "p_Weibull", "paper_variance",
+        "paper_deviation", "paper_row",
     )  # fmt: skip
     return [header, *(_width(found, key) for key in found.laws)]
 
@@ -118,9 +120,14 @@ def _width(found: Scatter, key: tuple[str, int, int]) -> tuple[Cell, ...]:
         label, sweep, tilt, len(law.values),
         *(_number(value) for value in (law.mean.value, law.mean.low, law.mean.high)),
         _number(law.variance.value), _number(law.deviation.value),
-        *(("", "", "") if fit is None else map(_number, (fit.shape.value, fit.scale.value, fit.p_anderson))),
+        *_interval(None if fit is None else fit.shape), *_interval(None if fit is None else fit.scale),
+        "" if fit is None else _number(fit.p_anderson),
         *paper,
     )  # fmt: skip
+
+
+def _interval(one: Interval | None) -> tuple[Cell, Cell, Cell]:
+    return ("", "", "") if one is None else (_number(one.value), _number(one.low), _number(one.high))
 
 
 def _number(value: float) -> Cell:

@@ -15,7 +15,7 @@ from server.reports.study.heat import heat
 from server.reports.study.histograms import histograms
 from server.reports.study.layout import MOST_LINES, MOST_PANELS, Layout, heat_layout, line_layouts
 from server.reports.study.lines import lines
-from server.reports.study.naming import axis_name, metric_title, point_text, short_metric
+from server.reports.study.naming import axis_name, metric_title, point_text, short_metric, value_text
 from server.reports.study.plot import plotted
 from server.reports.study.scatter import scatter
 from server.reports.study.trajectories import trajectories
@@ -90,7 +90,7 @@ def _panels(found: Analysis) -> dict[str, dict[str, Distribution]]:
     panels: dict[str, dict[str, Distribution]] = {}
     for place, one in found.distributions.items():
         point = dict(zip(found.samples.axes, found.samples.points[place], strict=True))
-        name = "runs" if words is None else str(point[words])
+        name = "runs" if words is None else value_text(words, point[words])
         others = {axis: point[axis] for axis in found.samples.varied() if axis != words}
         panels.setdefault(point_text(others), {})[name] = one
     return panels

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from control.studies.analysis.curves import split
 from control.studies.analysis.intervals import mean_of_means
-from control.studies.analysis.samples import Samples
+from control.studies.analysis.samples import Samples, is_number
 from server.reports.drawing import grid, label
 from server.reports.study.layout import MOST_PANELS, Layout, spread
 from server.reports.study.lines import shape
@@ -72,8 +72,8 @@ def _map(
     assert layout.line is not None
     axes.imshow(heights, origin="lower", aspect="auto", cmap=COLOURS, norm=scale, interpolation="nearest")
     x, y = samples.levels(layout.x), samples.levels(layout.line)
-    axes.set_xticks(range(len(x)), [_short(level) for level in x], fontsize=8)
-    axes.set_yticks(range(len(y)), [_short(level) for level in y], fontsize=8)
+    axes.set_xticks(range(len(x)), [_short(layout.x, level) for level in x], fontsize=8)
+    axes.set_yticks(range(len(y)), [_short(layout.line, level) for level in y], fontsize=8)
     if heights.size <= MOST_WRITTEN:
         _write(axes, heights, scale)
     title = "" if layout.panel is None else f"{axis_name(layout.panel)} {value_text(layout.panel, value)}"
@@ -90,5 +90,11 @@ def _write(axes: Axes, heights: NDArray[np.float64], scale: Normalize) -> None:
         )  # fmt: skip
 
 
-def _short(level: Any) -> str:
-    return f"{level:.4g}" if isinstance(level, float) else str(level)
+def _short(axis: str, level: Any) -> str:
+    return (
+        f"{level:.4g}"
+        if isinstance(level, float)
+        else str(level)
+        if is_number(level)
+        else value_text(axis, level)
+    )

@@ -38,7 +38,7 @@ def lines(samples: Samples, layout: Layout) -> Figure:
     _share_scale(axes[: len(chosen)])
     for spare in axes[len(chosen) :]:
         spare.set_axis_off()
-    _legend(figure, axes[0], layout)
+    _legend(figure, axes[: len(chosen)], samples, layout)
     return figure
 
 
@@ -54,10 +54,10 @@ def colours(count: int) -> list[Any]:
 
 
 def _panel(axes: Axes, samples: Samples, layout: Layout, panel: Panel) -> None:
-    chosen = spread(panel.curves, MOST_LINES)
-    for place, (curve, colour) in enumerate(zip(chosen, colours(len(chosen)), strict=True)):
-        aside = ASIDE * (place - 0.5 * (len(chosen) - 1))
-        _curve(axes, samples, layout, curve, (colour, MARKS[place % len(MARKS)], aside))
+    looks = _looks(samples, layout)
+    for curve in panel.curves:
+        if curve.value in looks:
+            _curve(axes, samples, layout, curve, looks[curve.value])
     title = (
         "" if layout.panel is None else f"{axis_name(layout.panel)} {value_text(layout.panel, panel.value)}"
     )
@@ -70,8 +70,18 @@ def _panel(axes: Axes, samples: Samples, layout: Layout, panel: Panel) -> None:
         if len(levels) <= MOST_TICKS:
             axes.set_xticks(levels)
     else:
-        axes.set_xticks(range(len(levels)), [str(level) for level in levels], fontsize=8)
+        axes.set_xticks(range(len(levels)), [value_text(layout.x, level) for level in levels], fontsize=8)
         axes.margins(x=0.2)
+
+
+def _looks(samples: Samples, layout: Layout) -> dict[Any, tuple[Any, str, float]]:
+    """Colour, mark and place aside of each line: a value has the same in every panel, whatever that lacks."""
+    values = [None] if layout.line is None else spread(samples.levels(layout.line), MOST_LINES)
+    middle = 0.5 * (len(values) - 1)
+    return {
+        value: (colour, MARKS[place % len(MARKS)], ASIDE * (place - middle))
+        for place, (value, colour) in enumerate(zip(values, colours(len(values)), strict=True))
+    }
 
 
 def _curve(axes: Axes, samples: Samples, layout: Layout, curve: Curve, look: tuple[Any, str, float]) -> None:
@@ -99,9 +109,18 @@ def _share_scale(axes: list[Axes]) -> None:
         one.set_ylim(max(low, 0.0) if low > -0.05 * (high - low) else low, high)
 
 
-def _legend(figure: Figure, axes: Axes, layout: Layout) -> None:
-    handles, labels = axes.get_legend_handles_labels()
-    if layout.line is not None and handles:
+def _legend(figure: Figure, panels: list[Axes], samples: Samples, layout: Layout) -> None:
+    if layout.line is None:
+        return
+    drawn = {
+        name: handle
+        for axes in panels
+        for handle, name in zip(*axes.get_legend_handles_labels(), strict=True)
+    }
+    names = (value_text(layout.line, value) for value in _looks(samples, layout))
+    labels = [name for name in names if name in drawn]
+    handles = [drawn[name] for name in labels]
+    if handles:
         figure.legend(
             handles, labels, loc="outside lower center", ncols=min(len(labels), 8), fontsize=8, frameon=False,
             title=axis_name(layout.line), title_fontsize=8,

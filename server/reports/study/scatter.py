@@ -12,7 +12,7 @@ from control.studies.analysis.samples import MOST_LEVELS, Samples
 from server.reports.drawing import BLACK, BLUE, ORANGE, grid, label
 from server.reports.study.layout import MOST_PANELS
 from server.reports.study.lines import shape
-from server.reports.study.naming import axis_title, short_metric
+from server.reports.study.naming import axis_title, short_metric, value_text
 
 
 def scatter(samples: Samples) -> Figure:
@@ -47,5 +47,5 @@ def _places(samples: Samples, axis: str) -> tuple[Any, list[str]]:
         return samples.numbers(axis), []
     levels = samples.levels(axis)
     return np.array([levels.index(value) for value in samples.column(axis)], dtype=float), [
-        str(one) for one in levels
+        value_text(axis, one) for one in levels
     ]

@@ -29,12 +29,13 @@ METHODS = (
     "The optimum along an axis: a natural smoothing spline through the levels' means (Mallows' Cp from the scatter of "
     "the repeats; below five levels the polynomial through them), and 2000 lines through means drawn anew for the "
     "intervals. “Flat” means that the interval covers more than 70 % of the range.",
-    "Shares of variance: analysis of variance with the interactions of two axes, type II sums of squares, basic "
-    "bootstrap within the sets. Of scattered points: Kruskal and Wallis over fifths of each axis, and Spearman's rank "
-    "correlation.",
-    "Weibull laws: maximum likelihood; intervals and the p of both tests are exact but for their Monte Carlo with "
-    "4000 samples of the same size. With a location: profile likelihood with a shape of at least 1, p from 199 "
-    "parametric bootstraps. Laws are compared by Akaike's criterion, corrected for few runs.",
+    "Shares of variance: analysis of variance with the interactions of two axes, type II sums of squares, intervals by "
+    "the noncentral F distribution; intervals and p suppose that all sets scatter alike. Of scattered points: Kruskal "
+    "and Wallis over fifths of each axis, and Spearman's rank correlation.",
+    "Weibull laws: maximum likelihood; intervals and the p of both tests are exact but for their Monte Carlo with up "
+    "to 4000 samples of the same size. With a location: profile likelihood with a shape of at least 1, p from 199 "
+    "parametric bootstraps. Laws are compared by Akaike's criterion, corrected for few runs. Deviations have Bonett's "
+    "intervals, which hold the true one in about 92 to 95 of 100 cases.",
     "The smooth surface through scattered sets is a Gaussian process over the logarithm of the sets' means, as for an "
     "auto-tune; its intervals are those of the smallest places of 500 surfaces drawn from it.",
     "Many tests are made in one report, so about one in twenty p below 0.05 is there by chance.",
@@ -66,7 +67,8 @@ def _body(content: Content) -> Iterator[str]:
     yield f"<h1>{escape(definition.name)}</h1>"
     yield page.paragraph(asked(definition, found))
     yield page.heading("What was found")
-    yield page.listing([*_searched(content), *words.sentences(found, content.table)])
+    before = words.unfinished(content.table, definition)
+    yield page.listing([*before, *_searched(content), *words.sentences(found, content.table)])
     if definition.on == "batch":
         yield page.paragraph(ASSUMED)
     yield page.heading(f"{metric_title(found.samples.metric)} over the axes")

@@ -101,7 +101,8 @@ def comparisons(found: tuple[Comparison, ...]) -> Table:
     )  # fmt: skip
     rows = [
         (
-            point_text(one.fixed), str(one.one), str(one.other), _rounded(one.means[0]), _rounded(one.means[1]),
+            point_text(one.fixed), value_text(one.axis, one.one), value_text(one.axis, one.other),
+            *map(_rounded, one.means),
             *_interval(one.difference), one.order.value, chance_text(one.p_welch), chance_text(one.p_ranks),
             _rounded(one.effect), f"{100.0 * one.below:.0f} %", f"{one.runs[0]} and {one.runs[1]}",
         )

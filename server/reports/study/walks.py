@@ -20,8 +20,9 @@ from server.reports.study.trajectories import Walked
 if TYPE_CHECKING:
     from control.studies.batch.plain import Step
 
-SIDE = 3
-"""Paths stand in a square of at most so many a side."""
+SIDE = 2
+"""Paths stand in a square of at most so many a side: each is walked once more, which is most of a report's time."""
+RANKED = 3
 LONGEST = 200.0
 """Simulated time of a run that is walked once more for its picture, s: about a second of computing."""
 
@@ -54,7 +55,7 @@ def paths(found: Analysis, table: StudyTable, source: Source) -> Paths | None:
 def chosen_sets(found: Analysis) -> tuple[list[int], int]:
     """Rows of the sets in samples.points, and how many stand side by side.
 
-    Of a grid: the ends and the middle of the two axes with the fewest levels, the others as in the best set, as in the
+    Of a grid: the ends of the two axes with the fewest levels, the others as in the best set, as in the
     paper's figures. Else the best, the middle and the worst set.
     """
     samples = found.samples
@@ -62,7 +63,7 @@ def chosen_sets(found: Analysis) -> tuple[list[int], int]:
     if found.best is None:
         return [], 1
     if samples.scattered or len(axes) < 2:
-        return _ranked(found), SIDE
+        return _ranked(found), RANKED
     across, up = (spread(samples.levels(axis), SIDE) for axis in axes)
     at = {point: place for place, point in enumerate(samples.points)}
     wanted = [
@@ -77,7 +78,7 @@ def _ranked(found: Analysis) -> list[int]:
     """The best set, that in the middle, and the worst; all of them where there are few."""
     places = [place for place, one in enumerate(found.summaries) if one.runs]
     places.sort(key=lambda place: found.summaries[place].mean.value)
-    return spread(places, SIDE)
+    return spread(places, RANKED)
 
 
 def _first(table: StudyTable, number: int) -> StudyRow | None:

@@ -12,8 +12,9 @@ from control.studies.analysis.distribution import REFUSED
 from control.studies.analysis.drift import Drift
 from control.studies.analysis.intervals import Interval
 from control.studies.analysis.optimum import FEWEST_LEVELS, Kind, Optimum
-from control.studies.analysis.sets import as_good_as_best
+from control.studies.analysis.sets import SetSummary, as_good_as_best
 from control.studies.analysis.whole import DISTRIBUTED, Analysis
+from control.studies.definition import StudyDefinition
 from control.studies.table import StudyTable
 from server.reports.study.naming import (
     axis_name,
@@ -52,13 +53,27 @@ def sentences(found: Analysis, table: StudyTable) -> list[str]:
 
 def _counts(found: Analysis, table: StudyTable) -> Iterator[str]:
     sets = len(found.summaries)
-    yield f"{found.finished} runs in {sets} {'set' if sets == 1 else 'sets'} finished; {found.failed} failed."
+    yield f"{_runs(found.finished)} in {sets} {'set' if sets == 1 else 'sets'} finished; {found.failed} failed."
     reasons = Counter(row.reason for row in table.rows if row.state == "failed")
     for reason, count in reasons.most_common(MOST_NAMED):
-        yield f"Failed, {count} times: {reason}. Failed runs are counted and in no mean."
+        yield f"Failed, {'once' if count == 1 else f'{count} times'}: {reason}. Failed runs are counted and in no mean."
     unknown = sum(one.runs == 1 for one in found.summaries)
     if unknown:
-        yield f"{unknown} of the sets have one finished run only: their means have no interval."
+        yield f"Sets with one finished run only: {unknown}; such a mean has no interval."
+
+
+def unfinished(table: StudyTable, definition: StudyDefinition) -> Iterator[str]:
+    """What was found before the end is preliminary."""
+    plan = definition.plan()
+    if plan.next({row.index: row for row in table.rows}):
+        yield (
+            f"The study is not over: {len(table.rows)} of at most {plan.total} runs are in this report, and what "
+            "follows may change."
+        )
+
+
+def _runs(count: int) -> str:
+    return "1 run" if count == 1 else f"{count} runs"
 
 
 def _best(found: Analysis) -> Iterator[str]:
@@ -70,10 +85,20 @@ def _best(found: Analysis) -> Iterator[str]:
     if not where:
         yield f"{metric} is {with_interval(best.mean)}."
         return
-    yield f"{metric} is smallest at {where}: {with_interval(best.mean)}."
+    yield f"{metric} is smallest at {where}: {with_interval(best.mean)}.{_survivors(best)}"
     others = len(as_good_as_best(found.summaries)) - 1
     if others > 0:
-        yield f"The intervals of {others} other sets reach as low: the data do not part them from the best one."
+        sets = (
+            "interval of one other set reaches" if others == 1 else f"intervals of {others} other sets reach"
+        )
+        yield f"The {sets} as low: the data do not part the best set from what lies there."
+
+
+def _survivors(best: SetSummary) -> str:
+    """A mean of the runs that came through is no fair comparison with a set that lost none."""
+    if not best.failed:
+        return ""
+    return f" But {best.failed} of its {best.runs + best.failed} runs failed, and the mean is of those that did not."
 
 
 def _optimum(found: Analysis, one: Optimum) -> str:
@@ -87,11 +112,20 @@ def _optimum(found: Analysis, one: Optimum) -> str:
     if one.kind is Kind.UNKNOWN:
         best = value_text(one.axis, one.measured)
         return f"{begin}the best level is {best}; how surely needs repeats of every set, at {FEWEST_LEVELS} levels."
+    if one.value.half_width == 0.0:
+        where, value = value_text(one.axis, round(one.where.value, 3)), number(one.value.value)
+        return (
+            f"{begin}a smooth line through the levels is lowest {one.kind.value}, at {where}, where it is {value}; "
+            "runs of the same set do not differ, so there is no interval."
+        )
     where, value = with_interval(one.where, unit), with_interval(one.value)
     if one.kind is Kind.FLAT:
         return f"{begin}{metric} is flat; where it is smallest cannot be told ({where})."
     if one.kind is Kind.INSIDE:
-        return f"{begin}{metric} is smallest at {where}, where it is {value}."
+        beyond = "; the interval reaches an end of what was tried, so a better value may lie beyond"
+        return (
+            f"{begin}{metric} is smallest at {where}, where it is {value}{beyond if one.open_ended else ''}."
+        )
     ends = f"{number(float(one.line[0]))} to {number(float(one.line[-1]))}"
     return (
         f"{begin}{metric} is smallest {one.kind.value} of what was tried, {where}, where it is {value}; "
@@ -109,7 +143,7 @@ def _joint(found: Analysis, joint: JointOptimum) -> str:
     ]
     metric = short_metric(found.samples.metric)
     return (
-        f"By a smooth surface through all sets, {metric} is smallest at {', '.join(places)}, where "
+        f"By a smooth surface through the sets, {metric} is smallest at {', '.join(places)}, where "
         f"{with_interval(joint.value)} is expected. An interval as wide as its axis says that the place cannot be told."
     )
 
@@ -122,8 +156,7 @@ def of_search(found: Answer) -> str:
         return f"{said}; the runs that are to confirm it are still to come."
     if found.measured is None:
         return f"{said}; no finished run confirms it."
-    runs = "run" if found.runs == 1 else "runs"
-    return f"{said}, and {_tuned(found.measured)} was measured in {found.runs} {runs} that had no part in choosing it."
+    return f"{said}, and {_tuned(found.measured)} was measured in {_runs(found.runs)} that had no part in choosing it."
 
 
 def _tuned(one: Tuned) -> str:
@@ -137,8 +170,11 @@ def _apart(found: Analysis) -> Iterator[str]:
         each = [one for one in found.apart if one.axis == axis]
         kinds = Counter(one.kind for one in each)
         parts = ", ".join(f"{kind.value} in {count}" for kind, count in kinds.most_common())
-        inside = sorted(one.where.value for one in each if one.kind is Kind.INSIDE)
+        inner = [one for one in each if one.kind is Kind.INSIDE]
+        inside = sorted(one.where.value for one in inner)
         ends = f"; the inner ones lie from {_ends(axis, inside)}" if inside else ""
+        unsure = sum(one.open_ended for one in inner)
+        ends += f", {unsure} of them with an interval that reaches an end of what was tried" if unsure else ""
         name = axis_name(axis)
         yield f"Along {name} at each of the {len(each)} combinations of the others, the optimum is {parts}{ends}."
 
@@ -161,6 +197,8 @@ def _effects(found: Analysis) -> Iterator[str]:
                 f"Of the variance of {metric}, so much goes with: {'; '.join(parts)}. "
                 f"Runs of the same set differ by {_percent(found.effects.noise)}."
             )
+        elif all(math.isnan(one.p) for one in found.effects.effects):
+            yield f"Which axis has an effect on {metric} cannot be tested without repeats."
         else:
             yield f"No axis has an effect on {metric} that could be told from the scatter of the runs."
     if found.influences:
@@ -175,8 +213,8 @@ def _effects(found: Analysis) -> Iterator[str]:
 
 def _comparisons(found: Sequence[Comparison]) -> Iterator[str]:
     for axis, *names in dict.fromkeys((each.axis, each.one, each.other) for each in found):
-        one, other = names
-        pairs = [each for each in found if (each.axis, each.one, each.other) == (axis, one, other)]
+        one, other = (value_text(axis, name) for name in names)
+        pairs = [each for each in found if (each.axis, each.one, each.other) == (axis, *names)]
         orders = Counter(each.order for each in pairs)
         ratios = sorted(each.ratio for each in pairs)
         below, above = orders[Order.LOWER], orders[Order.HIGHER]
@@ -219,4 +257,5 @@ def _drift(found: Analysis, drift: Drift) -> str:
 
 
 def _percent(share: float) -> str:
-    return f"{100.0 * share:.2g} %"
+    percent = 100.0 * share
+    return f"{percent:.0f} %" if percent >= 10.0 else f"{percent:.2g} %"

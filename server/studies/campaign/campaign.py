@@ -14,6 +14,7 @@ from control.model import Pose
 from control.registry import UnknownName
 from control.runs import RunRequest, RunState
 from control.safety import Refused
+from control.studies.errors import StudyError
 from control.studies.plan import PlannedRun
 from control.studies.sections import StartSection
 from control.studies.start import start_of
@@ -83,11 +84,13 @@ class Campaign:
                     self._attendant.leave()
         except Stopped as stopped:
             return Outcome(stopped.state, str(stopped))
-        except (Refused, RigGone, StudyStoreError, CatalogueError) as error:
+        except (Refused, RigGone, StudyStoreError, StudyError, CatalogueError) as error:
             return Outcome("interrupted", str(error))
 
     def _walk_all(self, book: Carrying) -> Outcome:
-        rules = StopRules(self._study.definition, book)
+        rules = StopRules(self._study.definition, book, self._plan)
+        if (ended := rules.failed) is not None:
+            return Outcome(ended.state, ended.reason)
         while ahead := self._plan.next(book.done):
             self._begin(ahead[0], book.done)
             row = self._row(self._plan.run(ahead[0], book.done))

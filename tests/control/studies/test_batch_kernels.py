@@ -1,10 +1,15 @@
 """The compiled walks of a batch against the plain loop, run by run, and each run by itself."""
 
+import ast
+import inspect
 import math
 import random
 import subprocess
 import sys
+import threading
 from dataclasses import asdict, replace
+from pathlib import Path
+from types import ModuleType
 
 import pytest
 from batch_runs import BOTTOM, planned
@@ -19,8 +24,8 @@ from control.simulation.plants import PlantChoice
 from control.studies.batch import Failed, RunFailed, plain_walk, simulate
 from control.studies.batch.compiled import prepared
 from control.studies.batch.courses import Courses, Wanted
-from control.studies.batch.kernel import walk_compiled
-from control.studies.batch.laws import LAWS, fingerprint
+from control.studies.batch.kernel import LOCK, alone_in, walk_compiled
+from control.studies.batch.laws import FORMULAS, LAWS, MODULES, OWN, fingerprint
 from control.studies.plan import PlannedRun
 from control.studies.settings import Setup
 
@@ -193,10 +198,75 @@ def test_courses_are_shared_and_their_number_of_ticks_is_bounded() -> None:
     assert courses.get(wanted[0]) is not first
 
 
+def test_courses_may_be_asked_for_by_many_threads_at_once() -> None:
+    courses, mistakes = Courses(most_ticks=300), list[Exception]()
+    wanted = [Wanted(planned(gait=Gait(path_step=0.1 * k)).selection, 1.0, 1.0, None) for k in range(1, 12)]
+
+    def ask(stride: int) -> None:
+        try:
+            for k in range(100):
+                courses.get(wanted[k * stride % 11])
+        except (RuntimeError, KeyError) as error:
+            mistakes.append(error)
+
+    threads = [threading.Thread(target=ask, args=(stride,)) for stride in (1, 2, 3, 5)]
+    before = sys.getswitchinterval()
+    sys.setswitchinterval(1e-6)
+    try:
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+    finally:
+        sys.setswitchinterval(before)
+    assert not mistakes
+
+
 def test_a_kept_kernel_is_known_by_the_laws_that_it_was_made_of() -> None:
     assert fingerprint() == LAWS
-    closure = walk_compiled.py_func.__closure__  # type: ignore[attr-defined]
+    closure = walk_compiled.py_func.__closure__
+    assert closure is not None
     assert [cell.cell_contents for cell in closure] == [LAWS]
+
+
+def test_the_laws_include_every_module_that_a_formula_takes_a_figure_from() -> None:
+    known = {name for module in MODULES for name in set(vars(module)) - imported_by(module)}
+    for formula in (*FORMULAS, *OWN):
+        used = {name for name in formula.__code__.co_names if name in formula.__globals__}
+        foreign = used - known - LIBRARIES
+        assert not foreign, f"{formula.__name__} rests on {foreign}"
+
+
+LIBRARIES = {"math", "np"}
+
+
+def imported_by(module: ModuleType) -> set[str]:
+    imports = [
+        node for node in ast.walk(ast.parse(inspect.getsource(module))) if isinstance(node, ast.ImportFrom)
+    ]
+    return {alias.name for node in imports for alias in node.names}
+
+
+def test_of_several_that_begin_at_once_one_compiles_and_the_others_wait(tmp_path: Path) -> None:
+    entered = threading.Event()
+
+    def come_second() -> None:
+        with alone_in(str(tmp_path)):
+            entered.set()
+
+    second = threading.Thread(target=come_second)
+    with alone_in(str(tmp_path)):
+        second.start()
+        assert not entered.wait(0.05)
+    second.join()
+    assert entered.is_set()
+
+
+def test_nobody_waits_where_nothing_can_be_locked(tmp_path: Path) -> None:
+    (tmp_path / LOCK).mkdir()
+    for folder in (None, str(tmp_path), str(tmp_path / "gone")):
+        with alone_in(folder), alone_in(folder):
+            pass
 
 
 def test_the_compiler_is_not_loaded_before_a_run_needs_it() -> None:

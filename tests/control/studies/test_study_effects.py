@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from control.studies.analysis.comparison import Order, compare
+from control.studies.analysis.comparison import Order, compare, pair
 from control.studies.analysis.curves import panels
 from control.studies.analysis.drift import drift
 from control.studies.analysis.effects import effects
@@ -27,6 +27,33 @@ def test_with_one_axis_the_analysis_of_variance_is_scipy_s() -> None:
     assert tilt.p == pytest.approx(stats.f_oneway(*samples.groups()).pvalue, rel=1e-9)
     assert tilt.share.value + found.noise == pytest.approx(1.0)
     assert tilt.share.low < tilt.share.value < tilt.share.high
+
+
+@pytest.mark.parametrize("repeats", [2, 10])
+def test_the_interval_of_a_share_holds_the_true_one_as_often_as_it_says(full: bool, repeats: int) -> None:
+    levels, seeds = [1.0, 2.0, 3.0, 4.0], 400 if full else 100
+    between = np.var([0.5 * level for level in levels])
+    drawn = [effects(one_axis(levels, repeats, lambda at: 0.5 * at, 1.0, seed)) for seed in range(seeds)]
+    held = sum(one is not None and one.effects[0].share.holds(between / (between + 1.0)) for one in drawn)
+    assert held / seeds == pytest.approx(0.95, abs=0.07)
+
+
+def test_runs_that_do_not_scatter_leave_nothing_unsure() -> None:
+    samples = one_axis([10.0, 20.0, 30.0], 3, lambda tilt: 0.01 * tilt, 0.0, 0)
+    found = effects(samples)
+    assert found is not None
+    assert found.effects[0].p == 0.0
+    assert found.effects[0].share.low == pytest.approx(1.0)
+    low, high = samples.of_set(0), samples.of_set(2)
+    assert pair(low, high).order is Order.LOWER
+    assert pair(low, low).order is Order.OPEN
+
+
+def test_without_repeats_an_effect_has_neither_chance_nor_interval() -> None:
+    found = effects(one_axis([10.0, 20.0, 30.0], 1, lambda tilt: 0.01 * tilt, 0.0, 0))
+    assert found is not None
+    assert math.isnan(found.effects[0].p)
+    assert not found.effects[0].share.known
 
 
 def test_planted_effects_and_an_interaction_are_found_and_no_other() -> None:
@@ -98,6 +125,27 @@ def test_a_drift_over_the_order_is_noticed_and_a_shuffled_one_is_not() -> None:
     assert not steady.noticed
     assert grown.noticed
     assert grown.slope.holds(0.1)
+
+
+@pytest.mark.parametrize("repeats", [2, 10])
+def test_a_drift_that_is_none_is_noticed_no_more_often_than_it_says(full: bool, repeats: int) -> None:
+    """With two repeats, the runs less their set's mean are pairs of each other's mirror, half as many as they seem."""
+    seeds = 1000 if full else 150
+    chances = []
+    for seed in range(seeds):
+        samples = one_axis([float(level) for level in range(12)], repeats, lambda _: 0.0, 1.0, seed)
+        found = drift(samples, np.random.default_rng(seed + seeds).permutation(len(samples.index)).tolist())
+        assert found is not None
+        chances.append(found.p)
+    assert np.mean(np.array(chances) < 0.05) < 0.11
+
+
+def test_the_drift_of_a_study_that_is_not_over_is_that_of_its_runs_so_far() -> None:
+    samples = one_axis([20.0], 20, lambda _: 0.2, 1e-6, 4)
+    samples.value[:] += np.linspace(0.0, 0.1, 20)
+    found = drift(samples, range(200))
+    assert found is not None
+    assert found.slope.value == pytest.approx(0.1, rel=0.01)
 
 
 def test_failed_runs_are_counted_and_in_no_mean() -> None:

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import stats
 
-from control.studies.analysis.distribution import describe
+from control.studies.analysis.distribution import _deviation, describe
 from control.studies.analysis.weibull import FEWEST, fit, statistics
 from control.studies.analysis.weibull_location import fit_located
 
@@ -84,6 +84,13 @@ def test_the_law_behind_the_runs_is_preferred() -> None:
     found = describe(np.exp(0.8 * rng.standard_normal(200))).preference
     assert min(found, key=found.__getitem__) == "log-normal"
     assert describe(0.2 * rng.weibull(1.5, 200)).preference["Weibull"] < 4.0
+
+
+@pytest.mark.parametrize("count", [20, 100])
+def test_the_interval_of_the_deviation_holds_the_true_one_in_nine_of_ten_cases(count: int) -> None:
+    true = stats.weibull_min.std(2.5, scale=0.3)
+    held = sum(_deviation(np.sort(drawn(2.5, 0.3, count, seed))).holds(true) for seed in range(SAMPLES))
+    assert held / SAMPLES >= 0.9
 
 
 @pytest.mark.parametrize(

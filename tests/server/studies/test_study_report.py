@@ -10,11 +10,14 @@ from typing import Any
 import numpy as np
 import pytest
 
+from control.studies.analysis.samples import samples
 from control.studies.analysis.whole import analyse
 from control.studies.batch import plain_walk
 from control.studies.definition import StudyDefinition
 from control.studies.table import StudyRow, StudyTable
 from control.studies.tuning.answer import Answer, Interval
+from server.reports.study.layout import Layout
+from server.reports.study.lines import lines
 from server.reports.study.plot import plot_png
 from server.reports.study.printed import PRINTED
 from server.reports.study.report import write_report
@@ -53,7 +56,7 @@ def bowl(values: Any, rng: np.random.Generator) -> float | None:
 def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Of a study with the paper's axes, a controller more, and enough runs for distributions."""
     definition = over(
-        ("controller", ["geometric", "gradient"]), (SWEEP, [25, 30]), (TILT, [20, 25, 30]), (STEP, [0.1]), repeats=24
+        ("controller", ["geometric", "gradient"]), (SWEEP, [25, 30]), (TILT, [20, 25, 30]), (STEP, [0.1]), repeats=20
     )  # fmt: skip
     return write_report(planted_table(definition, bowl), definition, tmp_path_factory.mktemp("report"))
 
@@ -111,6 +114,56 @@ def test_what_was_planted_is_said_first_with_its_interval(report: Path) -> None:
     assert re.search(r"Over tilt 20° to 30° .*: ME is smallest at 2[34]\.\d+° \(2\d.* to 2\d", said)
     assert f"{found.failed} failed" in said
     assert "it cannot be told" in said
+
+
+def told(definition: StudyDefinition, error: Callable[..., float | None]) -> str:
+    table = planted_table(definition, error)
+    return "\n".join(sentences(analyse(table.rows, table.axes), table))
+
+
+def test_shares_near_the_whole_are_written_as_people_write_them() -> None:
+    said = told(over((TILT, [20, 25, 30])), lambda v, rng: v[TILT] + 0.01 * float(rng.random()))
+    assert "tilt 100 % (100 % to 100 %)" in said
+
+
+def test_a_best_set_that_lost_runs_is_said_to_have() -> None:
+    definition = over((TILT, [20, 30]), repeats=6)
+
+    def error(values: Any, rng: np.random.Generator) -> float | None:
+        return (
+            None if values[TILT] == 20 and rng.random() < 0.5 else 0.01 * values[TILT] + 0.001 * rng.random()
+        )
+
+    assert re.search(r"smallest at tilt 20°.* But [1-5] of its 6 runs failed", told(definition, error))
+
+
+def test_without_scatter_or_repeats_words_say_so() -> None:
+    tilts = (TILT, [20, 25, 30])
+    assert "runs of the same set do not differ" in told(over(tilts), lambda v, _: abs(v[TILT] - 24) + 1.0)
+    assert "cannot be tested without repeats" in told(over(tilts, repeats=1), lambda v, _: 0.01 * v[TILT])
+
+
+def test_a_study_that_is_not_over_is_said_not_to_be() -> None:
+    definition = over((TILT, [20, 25, 30]))
+    table = planted_table(definition, bowl)
+    part = StudyTable(table.axes, list(table.rows)[:5])
+    assert not list(unfinished(table, definition))
+    assert "5 of at most 12 runs" in "".join(unfinished(part, definition))
+
+
+def test_a_line_has_the_same_colour_in_every_panel() -> None:
+    """The first panel lacks the first sweep."""
+    definition = over((TILT, [20, 25, 30]), (SWEEP, [20, 30]), (STEP, [0.1, 0.2]))
+    table = planted_table(definition, lambda _, rng: 0.2 + 0.01 * float(rng.random()))
+    kept = [row for row in table.rows if (row.values[SWEEP], row.values[STEP]) != (20, 0.1)]
+    found = samples(kept, table.axes)
+    figure = lines(found, Layout(TILT, SWEEP, STEP, ()))
+    colours = [
+        {container.get_label(): container.lines[0].get_color().tobytes() for container in axes.containers}
+        for axes in figure.axes[:2]
+    ]
+    assert colours[0]["30°"] == colours[1]["30°"] != colours[1]["20°"]
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["20°", "30°"]
 
 
 def test_a_run_walked_once_more_for_its_picture_is_the_run_of_the_table() -> None:
@@ -182,6 +235,7 @@ def test_a_report_is_made_of_every_odd_table(name: str, tmp_path: Path) -> None:
     page = write_report(table, definition, tmp_path / "new" / "folder").read_text()
     assert not re.search(r"\bnan\b", re.sub(r"data:image/png;base64,[^\"]*", "", page))
     assert "What was found" in page
+    assert "None" not in page[page.index("What was found") :]
 
 
 def test_the_answer_of_a_search_is_said_first(tmp_path: Path) -> None:
