@@ -157,11 +157,11 @@ def best_json(definition: StudyDefinition, digest: Digest) -> dict[str, Any] | N
 
 
 def _words(definition: StudyDefinition, so_far: SetSoFar) -> str:
-    """`tilt 25 °, path step 0.1 s`."""
+    """`tilt 25°, path step 0.1 s`."""
     parts = []
     for name, value in so_far.values.items():
         of = quantity(definition, name)
-        unit = "" if of.unit in ("", "1") else f" {of.unit}"
+        unit = "" if of.unit in ("", "1") else of.unit if of.unit == "°" else f" {of.unit}"
         shown = (
             f"{value:.6g}" if isinstance(value, int | float) and not isinstance(value, bool) else str(value)
         )

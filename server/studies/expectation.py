@@ -9,10 +9,11 @@ from control.studies.crews import cores
 from control.studies.definition import StudyDefinition
 
 COMPILED = {"geometric": 2.1e-5, "gradient": 4.3e-5}
-"""Time of one processor for a second of rig time, s, by controller: compiled walks. Measured, as the next three, on
-a server's core of 2020: one pass of the eight, 126 s, takes 2.6 and 5.4 ms."""
+"""Time of one processor for a second of rig time, s, by controller: compiled walks. Measured, as the next three,
+by `make bench` (studies, rigid): one pass of the eight, 126 s, takes 2.6 and 5.4 ms."""
 PLAIN = 2.8e-3
-"""The same in plain Python, which the time law `wait`, an approach and all other controllers take: 0.35 s."""
+"""The same in plain Python, which the time law `wait`, an approach and all other controllers take: 0.35 s, by the
+geometric one."""
 PLANNER = 1.1e-2
 """The same for the planner: 1.4 s."""
 RIGID = 0.05
@@ -21,7 +22,7 @@ READY = 4.0
 """Until all workers have loaded the program, s. The first batch of all takes about 8 s more, which no estimate has:
 its laws are compiled, and kept on the disk."""
 HEADLESS = 0.15
-"""Time of a simulated rig with pixels and bytes for a second of its own, s."""
+"""Time of a simulated rig with pixels and bytes for a second of its own, s: a guess, as the next one."""
 WAY_BACK = 10.0
 """Rig time of the way back to the start, s."""
 

@@ -185,6 +185,7 @@ def test_a_campaign_walks_the_rig_is_stopped_by_stop_and_resumed_by_a_person(
     button(study, "Resume study").click()
     expect(study.locator(".study-now")).to_contain_text("waiting for a person", ignore_case=True)
     button(page, "Reset").click()
+    button(page, "Arm").click()
     eventually(
         lambda: served.ask("/studies")["studies"][0]["done"] > done,
         "another run of the study",

@@ -13,12 +13,13 @@ from typing import NoReturn
 
 from control.studies import batch
 from server import cli
+from server.catalogue import catalogue, opening
 from server.commands import studies, study_sitting
 from server.studies import carrying_out, store
 
 BROKEN = 70
 """Exit status of a command that raised."""
-LOADED = (batch, studies, study_sitting, carrying_out, store)
+LOADED = (batch, catalogue, opening, studies, study_sitting, carrying_out, store)
 """What the commands load when they are needed."""
 
 

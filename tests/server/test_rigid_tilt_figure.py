@@ -23,7 +23,10 @@ def test_the_figure_has_a_panel_for_each_quantity_and_ramp_and_a_line_for_each_l
     figure = rigid_tilt(POINTS)
     assert len(figure.axes) == 6
     assert [text.get_text() for text in figure.legends[0].get_texts()] == ["Λ = 2", "Λ = 7"]
-    assert [axes.get_title(loc="left") for axes in figure.axes[:2]] == ["elevation ramp 50 ms", "elevation ramp 150 ms"]
+    assert [axes.get_title(loc="left") for axes in figure.axes[:2]] == [
+        "elevation ramp 50 ms",
+        "elevation ramp 150 ms",
+    ]
     # A dotted line where the free end lifts, for the one whose place lies inside: asin(1/2) = 30 degrees.
     dotted = [line for line in figure.axes[0].get_lines() if line.get_linestyle() == ":"]
     assert [float(line.get_xdata()[0]) for line in dotted] == pytest.approx([30.0])  # type: ignore[index]

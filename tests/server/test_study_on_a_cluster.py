@@ -26,9 +26,9 @@ ALL = [
 
 
 @pytest.fixture(scope="module")
-def cluster():
+def cluster(full):
     with LocalCluster(
-        n_workers=2,
+        n_workers=2 if full else 1,
         threads_per_worker=1,
         processes=True,
         dashboard_address=":0",

@@ -23,7 +23,7 @@ const change = (part) => now() && set({ composing: { ...now(), ...part } });
 /** A study of the page's own selection: what varies is still to be said. */
 function fresh() {
   const { controller, trajectory, gait } = get().selection;
-  return { name: "", on: "batch", design: "grid", repeats: 3, order: "blocked", seed: 1, controller, trajectory, gait, plant: { name: "slip" }, axes: [{ of: "gait.tilt_deg", values: [20, 25, 30] }] };
+  return { name: "New study", on: "batch", design: "grid", repeats: 3, order: "blocked", seed: 1, controller, trajectory, gait, plant: { name: "slip" }, axes: [{ of: "gait.tilt_deg", values: [20, 25, 30] }] };
 }
 
 /** Opens the form, empty or with a definition to begin with. */

@@ -18,7 +18,7 @@ export function Figures({ study }) {
   const turn = (part) => setView({ ...view, ...part });
   const layout = layoutOf(study, view);
   const metric = metricOf(study.metric);
-  if (study.sets.length === 0 || !layout.across) return html`<p class="hint">The figures fill as runs finish.</p>`;
+  if (study.done === study.failed || study.sets.length === 0 || !layout.across) return html`<p class="hint">The figures fill as runs finish.</p>`;
   const kind = view.kind ?? (layout.down ? "map" : "lines");
   return html`
     <section class="study-figures" aria-label="Figures">
@@ -46,7 +46,7 @@ function Panels({ kind, study, layout, metric }) {
           surface=${surface} caption=${layout.panel ? `${layout.panel.title} ${valueWithUnit(value, layout.panel)}` : ""} />
       `)}
     </div>
-    ${study.best && Picture === HeatMap && html`<p class="hint">The framed cell has the smallest mean so far.</p>`}
+    ${study.best && Picture === HeatMap && html`<p class="hint">The framed cell has the smallest mean.</p>`}
     ${surface && html`<p class="hint">Behind the dots: what the search expects, all other axes at their best.</p>`}
     ${kind === "lines" && grid && html`<p class="hint">Bars: 95 % interval of the mean.</p>`}
     ${kind === "lines" && !grid && html`<p class="hint">These sets do not lie on a grid, so there are no lines to draw: a dot each.</p>`}

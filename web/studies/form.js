@@ -11,8 +11,8 @@ import { Choice, Entry, Select } from "./entry.js";
 import { Limits } from "./limits.js";
 import { roughly } from "./words.js";
 
-const ON = [["batch", "Fast simulation, no camera and no board"], ["rig", "This rig, run by run"]];
-const ORDER = [["blocked", "In blocks: each repeat is one shuffled pass"], ["random", "All shuffled"], ["listed", "As listed"]];
+const ON = [["batch", "Fast simulation"], ["rig", "This rig, run by run"]];
+const ORDER = [["blocked", "Shuffled in blocks"], ["random", "All shuffled"], ["listed", "As listed"]];
 
 export function Form() {
   const title = useRef(null);

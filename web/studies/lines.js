@@ -9,6 +9,8 @@ import { axisTitle, metricTitle, setText, valueText, valueWithUnit, withInterval
 const HEIGHT = 260;
 const MARGIN = { left: 52, right: 14, top: 10, bottom: 40 };
 const CAP = 4;
+const APART = 5;
+const ALL_APART = 24;
 
 /** range: [low, high] of the figure, the same in every panel. */
 export function Lines({ sets, layout, range, metric, caption }) {
@@ -22,7 +24,7 @@ export function Lines({ sets, layout, range, metric, caption }) {
       ${caption && html`<figcaption>${caption}</figcaption>`}
       <svg width=${width} height=${HEIGHT} role="img" aria-label=${`${metricTitle(metric)} over ${across.title.toLowerCase()}${caption ? `, ${caption}` : ""}; the table of sets has the numbers`}>
         <${Frame} x=${x} y=${y} width=${width} range=${range} across=${across} metric=${metric} />
-        ${rows.map((row, index) => html`<${Line} points=${pointsOf(sets, across, down, row)} x=${x} y=${y} index=${index} axes=${layout.axes} metric=${metric} />`)}
+        ${rows.map((row, index) => html`<${Line} points=${pointsOf(sets, across, down, row)} x=${beside(x, index, rows.length)} y=${y} index=${index} axes=${layout.axes} metric=${metric} />`)}
       </svg>
     </figure>
   `;
@@ -63,6 +65,9 @@ function Frame({ x, y, width, range, across, metric }) {
     </g>
   `;
 }
+
+/** Lines over the same places stand a little apart, so that their intervals can be told from each other. */
+const beside = (x, index, count) => (value) => x(value) + (index - (count - 1) / 2) * Math.min(APART, ALL_APART / count);
 
 /** As many as there is room for. */
 function thinned(values, width) {

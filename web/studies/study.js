@@ -44,10 +44,12 @@ function Page({ study, trouble, working }) {
   `;
 }
 
-function Best({ study: { best, axes } }) {
+const soFar = (state) => (state === "finished" ? "" : " so far");
+
+function Best({ study: { best, axes, state } }) {
   const [, words, unit, digits] = metricOf(best.metric);
   const where = axes.length > 0 ? ` at ${setText(best.values, axes)}` : "";
-  return html`<p>Smallest ${words} so far: <b>${withInterval(best, digits)}</b> ${unit}${where} (n = ${best.runs}).</p>`;
+  return html`<p>Smallest ${words}${soFar(state)}: <b>${withInterval(best, digits)}</b> ${unit}${where} (n = ${best.runs}).</p>`;
 }
 
 /** What a search for the best has found. */

@@ -22,7 +22,7 @@ from server.reports.study.plot import plot_png
 from server.reports.study.printed import PRINTED
 from server.reports.study.report import write_report
 from server.reports.study.walks import Recorded, WalkedAgain
-from server.reports.study.words import of_search, sentences
+from server.reports.study.words import of_search, sentences, unfinished
 from tests.control.studies.planted import planted_table
 from tests.server.recorded_walk import record_walk
 
@@ -56,7 +56,7 @@ def bowl(values: Any, rng: np.random.Generator) -> float | None:
 def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Of a study with the paper's axes, a controller more, and enough runs for distributions."""
     definition = over(
-        ("controller", ["geometric", "gradient"]), (SWEEP, [25, 30]), (TILT, [20, 25, 30]), (STEP, [0.1]), repeats=20
+        ("controller", ["geometric", "gradient"]), (SWEEP, [25, 30]), (TILT, [20, 25, 30]), (STEP, [0.1]), repeats=24
     )  # fmt: skip
     return write_report(planted_table(definition, bowl), definition, tmp_path_factory.mktemp("report"))
 
