@@ -82,8 +82,9 @@ def test_a_minimum_that_the_scatter_hides_is_not_comparable_and_says_why():
 def test_a_minimum_whose_interval_leaves_the_papers_place_is_not_called_reproduced():
     tilts = measured(TILTS, bowl(27.3), scatter=0.05)
     slip = tilts.only(plant="slip")
-    where = slip.best("tilt", sweep=10, step=0.1).where
-    assert where.low < 27.0 < where.high
+    best = slip.best("tilt", sweep=10, step=0.1)
+    assert best is not None
+    assert best.where.low < 27.0 < best.where.high
     assert tilt_claims.smallest("slip", slip, 10).verdict is OPEN
 
 

@@ -32,7 +32,7 @@ def test_with_one_axis_the_analysis_of_variance_is_scipy_s() -> None:
 @pytest.mark.parametrize("repeats", [2, 10])
 def test_the_interval_of_a_share_holds_the_true_one_as_often_as_it_says(full: bool, repeats: int) -> None:
     levels, seeds = [1.0, 2.0, 3.0, 4.0], 400 if full else 100
-    between = np.var([0.5 * level for level in levels])
+    between = float(np.var([0.5 * level for level in levels]))
     drawn = [effects(one_axis(levels, repeats, lambda at: 0.5 * at, 1.0, seed)) for seed in range(seeds)]
     held = sum(one is not None and one.effects[0].share.holds(between / (between + 1.0)) for one in drawn)
     assert held / seeds == pytest.approx(0.95, abs=0.07)

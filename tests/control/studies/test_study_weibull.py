@@ -89,7 +89,9 @@ def test_the_law_behind_the_runs_is_preferred() -> None:
 @pytest.mark.parametrize("count", [20, 100])
 def test_the_interval_of_the_deviation_holds_the_true_one_in_nine_of_ten_cases(count: int) -> None:
     true = stats.weibull_min.std(2.5, scale=0.3)
-    held = sum(_deviation(np.sort(drawn(2.5, 0.3, count, seed))).holds(true) for seed in range(SAMPLES))
+    held = sum(
+        _deviation(np.sort(drawn(2.5, 0.3, count, seed))).holds(float(true)) for seed in range(SAMPLES)
+    )
     assert held / SAMPLES >= 0.9
 
 

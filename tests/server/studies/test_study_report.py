@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from matplotlib.container import ErrorbarContainer
 
 from control.studies.analysis.samples import samples
 from control.studies.analysis.whole import analyse
@@ -159,7 +160,11 @@ def test_a_line_has_the_same_colour_in_every_panel() -> None:
     found = samples(kept, table.axes)
     figure = lines(found, Layout(TILT, SWEEP, STEP, ()))
     colours = [
-        {container.get_label(): container.lines[0].get_color().tobytes() for container in axes.containers}
+        {
+            name: tuple(handle.lines[0].get_color())
+            for handle, name in zip(*axes.get_legend_handles_labels(), strict=True)
+            if isinstance(handle, ErrorbarContainer)
+        }
         for axes in figure.axes[:2]
     ]
     assert colours[0]["30°"] == colours[1]["30°"] != colours[1]["20°"]
