@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from control.studies.checking import survey
+from control.studies.definition import StudyDefinition
 from server.rig_file import load_rig_file
 from server.settings import RigFile
 from tests.processes import served
@@ -53,10 +55,16 @@ def test_the_script_of_the_readme_works(tmp_path: Path) -> None:
 
 
 def test_the_rig_file_of_the_readme_is_valid(tmp_path: Path) -> None:
-    (text,) = blocks("toml")
+    (text,) = (block for block in blocks("toml") if "[limits]" in block)
     rig_file = tmp_path / "rig.toml"
     rig_file.write_text(text)
     assert load_rig_file(rig_file).name == "Bench 2"
+
+
+def test_the_study_of_the_readme_can_be_carried_out() -> None:
+    (text,) = (block for block in blocks("toml") if "[[axes]]" in block)
+    found = survey(StudyDefinition.from_toml(text))
+    assert (found.sets, found.runs, list(found.problems)) == (21, 210, [])
 
 
 def test_the_example_rig_file_shows_every_default() -> None:

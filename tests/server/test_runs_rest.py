@@ -255,7 +255,9 @@ async def test_without_a_catalogue_this_session_s_runs_are_listed(at, page):
     try:
         answer = await page.get("/runs")
         assert answer.status_code == 200
-        assert "cannot be opened" in answer.json()["trouble"]
+        trouble = answer.json()["trouble"]
+        assert catalogue.path.name in trouble
+        assert "cannot be" in trouble, "opened, or read where somebody still has it open"
         one = await page.get(f"/runs/{record(5).id}")
         assert (one.status_code, one.json()["title"]) == (503, "No catalogue")
     finally:
