@@ -21,7 +21,7 @@ from server.api.problems import Problem, Rejected, not_found, offence
 from server.api.study_bodies import Begin, DefinitionBody, Metric, StudyBody, metric_of, wrong
 from server.api.study_json import StudyJson, axes_json
 from server.studies.child import ChildFailed
-from server.studies.desk import StudyDesk
+from server.studies.desk import Asked, StudyDesk
 from server.studies.errors import NoSuchStudy, StudyBusy, StudyStoreError
 from server.studies.expectation import expected_wall
 from server.studies.learning import Learning
@@ -87,6 +87,7 @@ async def list_plants() -> list[dict[str, Any]]:
 @router.post("/studies", status_code=201)
 async def create(body: StudyBody, desk: TheDesk, shown: TheJson) -> dict[str, Any]:
     """Make a study, and begin it unless `begin` is false."""
+    asked = desk.asked(consent=body.how.consent, jobs=body.how.jobs)
     definition = await asyncio.to_thread(body.read)
     found = await desk.surveyed(definition)
     if found.problems:
@@ -96,7 +97,7 @@ async def create(body: StudyBody, desk: TheDesk, shown: TheJson) -> dict[str, An
     study = await blocking(desk.store.create, definition)
     desk.tell_of("created", study)
     if body.begin:
-        await begun(desk, study, body.how)
+        await begun(desk, study, asked)
     return await blocking(shown.short, study)
 
 
@@ -107,9 +108,9 @@ def with_words(check: Callable[[], None]) -> None:
         raise busy(error) from error
 
 
-async def begun(desk: StudyDesk, study: Study, how: Begin) -> None:
+async def begun(desk: StudyDesk, study: Study, asked: Asked) -> None:
     try:
-        await desk.begin(study, consent=how.consent, jobs=how.jobs)
+        await desk.begin(study, asked)
     except StudyBusy as error:
         raise busy(error) from error
 
@@ -175,9 +176,11 @@ async def stop(study: TheStudy, desk: TheDesk, shown: TheJson) -> dict[str, Any]
 @router.post("/studies/{study_id}/resume")
 async def resume(study: TheStudy, desk: TheDesk, shown: TheJson, body: Begin | None = None) -> dict[str, Any]:
     """Go on with what is left; nothing that has finished is done again."""
+    how = body or Begin()
+    asked = desk.asked(consent=how.consent, jobs=how.jobs)
     if await blocking(lambda: study.is_complete):
         raise Rejected(Problem(409, "Finished", "This study has finished; nothing is left to be done."))
-    await begun(desk, study, body or Begin())
+    await begun(desk, study, asked)
     return await blocking(shown.short, study)
 
 

@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from control.studies.checking import Survey, runs_at_most, survey
 from control.studies.definition import StudyDefinition
+from server.occupation import Stop
 from server.rig_life import ENDED
 from server.studies.campaign import Activity, Campaign
 from server.studies.child import Child, ChildFailed, Verb
@@ -64,6 +65,19 @@ class Work:
     task: asyncio.Task[None] | None = None
 
 
+@dataclass(frozen=True, slots=True)
+class Asked:
+    """How a person wants a study carried out.
+
+    consent: a campaign may put current through real coils.  jobs: processes of a batch; 0: one a core.  heard: the
+    newest stop of the rig at that time; one that comes later counts against the study, too.
+    """
+
+    consent: bool
+    jobs: int
+    heard: Stop | None
+
+
 class StudyDesk:
     """Belongs to the event loop."""
 
@@ -97,12 +111,12 @@ class StudyDesk:
             f"the study {other.study.definition.name!r} {where}; wait until it has finished, or stop it first"
         )
 
-    async def begin(self, study: Study, *, consent: bool = False, jobs: int = 0) -> None:
-        """Go on with what is left of a study. Raises `StudyBusy`.
+    def asked(self, *, consent: bool, jobs: int) -> Asked:
+        """To be called first of all, so that no stop is missed while a study is made ready."""
+        return Asked(consent, jobs, self._rig.occupation.latest_stop)
 
-        consent: a person agrees that a campaign puts current through real coils.  jobs: processes of a batch; 0: one
-        a core.
-        """
+    async def begin(self, study: Study, asked: Asked) -> None:
+        """Go on with what is left of a study. Raises `StudyBusy`."""
         on = study.definition.on
         self.require_free(on)
         tally = await asyncio.to_thread(study.tally)
@@ -110,7 +124,7 @@ class StudyDesk:
         total = runs_at_most(study.definition)
         work = Work(study, tally.done, total, tally.failed, begun_with=tally.done, began=time.monotonic())
         self._works[study.id] = work
-        carry = self._walk(work, consent) if on == "rig" else self._compute(work, jobs)
+        carry = self._walk(work, asked) if on == "rig" else self._compute(work, asked.jobs)
         work.task = asyncio.create_task(self._carried(work, carry), name=f"study {study.id}")
         self._tell("started", work)
 
@@ -167,11 +181,11 @@ class StudyDesk:
 
     # A campaign ----------------------------------------------------------------------------------
 
-    async def _walk(self, work: Work, consent: bool) -> None:
+    async def _walk(self, work: Work, asked: Asked) -> None:
         from server.studies.campaign.on_rig import RigOperator
 
         events = asyncio.get_running_loop()
-        operator = RigOperator(self._rig, consent=consent)
+        operator = RigOperator(self._rig, consent=asked.consent, heard=asked.heard)
 
         def tell(activity: Activity) -> None:
             with contextlib.suppress(RuntimeError):  # the server has ended meanwhile

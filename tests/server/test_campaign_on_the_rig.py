@@ -26,9 +26,9 @@ TWO_RUNS = {"axes": [{"of": "gait.tilt_deg", "values": [22, 28]}]}
 class Bench:
     """A served rig that runs as fast as it goes."""
 
-    def __init__(self, rig, archive, api):
-        self.rig, self.archive, self.api = rig, archive, api
-        self.store = StudyStore(archive.folder.parent, archive.catalogue)
+    def __init__(self, app, api):
+        self.rig, self.archive, self.desk, self.api = app.state.rig, app.state.archive, app.state.studies, api
+        self.store = StudyStore(self.archive.folder.parent, self.archive.catalogue)
         self.words = []
 
     def study(self, **changes):
@@ -42,7 +42,7 @@ class Bench:
             if now.words == stop_at:
                 self.rig.stop_coils()
 
-        operator = RigOperator(self.rig, consent=False)
+        operator = RigOperator(self.rig, consent=False, heard=self.rig.occupation.latest_stop)
         campaign = Campaign(study, operator, self.archive.catalogue, tell)
         return campaign, asyncio.create_task(asyncio.to_thread(campaign.run))
 
@@ -64,12 +64,12 @@ async def bench(serve, tmp_path):
         return build_machine(settings, realtime=False)
 
     archive = Archive.open(tmp_path, patient=True)
-    rig = Rig(build(RigFile()), build, archive.recorder)
+    app = create_app(Rig(build(RigFile()), build, archive.recorder), archive)
     async with (
-        serve(create_app(rig, archive)) as at,
+        serve(app) as at,
         httpx.AsyncClient(base_url=at.url + "/api/v1", timeout=PATIENCE) as api,
     ):
-        yield Bench(rig, archive, api)
+        yield Bench(app, api)
 
 
 async def test_a_campaign_has_the_rig_to_itself_but_for_a_pause_and_leaves_it_disarmed(bench):
@@ -135,13 +135,16 @@ async def test_a_stopped_campaign_goes_on_once_a_person_has_reset_the_rig(bench)
 async def test_a_stop_that_comes_before_a_campaign_has_the_rig_counts(bench):
     """Between the request and the rig there are threads and files."""
     study = bench.study()
-    operator = RigOperator(bench.rig, consent=True)
+    asked = bench.desk.asked(consent=True, jobs=0)
     assert (await bench.api.post("/disarm")).status_code == 200
     states = set()
     with bench.rig.watched(lambda snapshot: states.add(snapshot.rig)):
-        campaign = Campaign(study, operator, bench.archive.catalogue)
-        outcome = await asyncio.wait_for(asyncio.to_thread(campaign.run), PATIENCE)
-    assert (outcome.state, outcome.reason) == ("stopped", "the operator disarmed the rig")
+        await bench.desk.begin(study, asked)
+        async with asyncio.timeout(PATIENCE):
+            while bench.desk.work_on(study.id) is not None:
+                await asyncio.sleep(0.005)
+    condition = study.condition
+    assert (condition.state, condition.reason) == ("stopped", "the operator disarmed the rig")
     assert states == {RigState.DISARMED}
 
 

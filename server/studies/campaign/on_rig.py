@@ -13,7 +13,7 @@ from control.loop import ControlLoop
 from control.runs import Run, RunRequest
 from control.safety import Refused
 from control.snapshot import RigState, Snapshot
-from server.occupation import Occupant
+from server.occupation import Occupant, Stop
 from server.studies.campaign.operator import RigGone
 
 if TYPE_CHECKING:
@@ -30,16 +30,17 @@ class RigOperator:
     """To be made on the event loop's thread, and used on another one.
 
     consent: a person agrees that the campaign arms the rig when it begins; a simulated rig needs none.
+    heard: the newest stop when that person asked for the campaign; a later one counts.
     """
 
     is_attended = True
 
-    def __init__(self, rig: Rig, *, consent: bool) -> None:
+    def __init__(self, rig: Rig, *, consent: bool, heard: Stop | None) -> None:
         self.may_arm = consent or rig.settings.is_simulated
         self._rig = rig
         self._events = asyncio.get_running_loop()
         self._ticked = threading.Event()
-        self._stopped_before = rig.occupation.latest_stop
+        self._stopped_before = heard
         self._newest: Snapshot | None = None
         """Of the ticks since the campaign did something."""
 
