@@ -16,6 +16,7 @@ from server.reports.page import Picture
 from server.reports.part import Part
 
 if TYPE_CHECKING:
+    from control.studies.table import StudyTable
     from server.reports.experiments.carrying import Watch
 
 TITLE = "The paper's results, reproduced"
@@ -53,7 +54,7 @@ def reproduce(folder: Path, extent: Extent | None = None, watch: Watch | None = 
     began = time.perf_counter()
     folder.mkdir(parents=True, exist_ok=True)
     asked = extent or Extent()
-    parts = [make() for section, make in _makers(asked, watch).items() if section in asked.sections]
+    parts = [make() for section, make in _makers(folder, asked, watch).items() if section in asked.sections]
     found = tuple(one for part in parts for one in part.findings)
     contents = {f"{one.name}.png": one.png for part in parts for one in part.pictures}
     numbers = {name: table for part in parts for name, table in part.tables.items()}
@@ -68,8 +69,8 @@ def reproduce(folder: Path, extent: Extent | None = None, watch: Watch | None = 
     return Reproduction(folder / "report.html", files, found, time.perf_counter() - began)
 
 
-def _makers(extent: Extent, watch: Watch | None) -> dict[int, Callable[[], Part]]:
-    return {3: _locomotion, 5: _simulation, 6: lambda: _experiments(extent, watch)}
+def _makers(folder: Path, extent: Extent, watch: Watch | None) -> dict[int, Callable[[], Part]]:
+    return {3: _locomotion, 5: _simulation, 6: lambda: _experiments(folder, extent, watch)}
 
 
 def _locomotion() -> Part:
@@ -125,13 +126,17 @@ def _simulation() -> Part:
     )
 
 
-def _experiments(extent: Extent, watch: Watch | None) -> Part:
-    from server.reports.experiments.carrying import carry_out
+def _experiments(folder: Path, extent: Extent, watch: Watch | None) -> Part:
+    from server.reports.experiments.carrying import carry_out, file_of
     from server.reports.experiments.designs import RIGID, experiments
     from server.reports.experiments.part import part
 
     studies = [one for one in experiments(extent.runs) if extent.rigid or one.key != RIGID]
-    return part(studies, carry_out(studies, extent.jobs, watch))
+
+    def keep(key: str, table: StudyTable) -> None:
+        (folder / file_of(key)).write_bytes(table.csv())
+
+    return part(studies, carry_out(studies, extent.jobs, watch, keep))
 
 
 def _drawn(*drawn: tuple[str, str, drawing.Figure]) -> tuple[Picture, ...]:

@@ -279,8 +279,17 @@ def short(one, seconds=1.5):
 def whole():
     """All studies of kinematic plants, with two runs of a set and the first seconds of an eight."""
     studies = [short(one) for one in experiments(2) if one.key != RIGID]
-    told = []
-    tables = carry_out(studies, jobs=1, watch=lambda one, done, total: told.append((one.key, done, total)))
+    told, kept = [], {}
+
+    def keep(key, table):
+        assert not any(done > sum(map(len, kept.values())) + len(table) for _, done, _ in told), "at once"
+        kept[key] = table
+
+    def watch(one, done, total):
+        told.append((one.key, done, total))
+
+    tables = carry_out(studies, jobs=1, watch=watch, keep=keep)
+    assert kept == tables
     return studies, tables, told
 
 

@@ -15,15 +15,27 @@ Watch = Callable[[Experiment, int, int], None]
 Tables = dict[str, StudyTable]
 """By the studies' keys."""
 
+Keep = Callable[[str, StudyTable], None]
+"""Given each table as soon as it is whole, with its study's key: half an hour of runs must not hang on a figure."""
 
-def carry_out(studies: Sequence[Experiment], jobs: int = 0, watch: Watch | None = None) -> Tables:
+
+def file_of(key: str) -> str:
+    """Name of the file that keeps a study's table."""
+    return f"section6_{key}.csv"
+
+
+def carry_out(
+    studies: Sequence[Experiment], jobs: int = 0, watch: Watch | None = None, keep: Keep | None = None
+) -> Tables:
     """jobs: processes; 0: one a core; the tables do not depend on it. Raises `WorkersLost`."""
     total = sum(study.definition.plan().total for study in studies)
     tables: Tables = {}
     with hired(jobs) as workers:
         for study in studies:
             before = sum(len(table) for table in tables.values())
-            tables[study.key] = _carried_out(study, workers, before, total, watch)
+            table = tables[study.key] = _carried_out(study, workers, before, total, watch)
+            if keep is not None:
+                keep(study.key, table)
     return tables
 
 

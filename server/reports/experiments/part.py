@@ -9,7 +9,7 @@ from control.simulation.rigid.tilt_study import TiltPoint, tilt_study
 from control.studies.analysis.intervals import Interval
 from server.reports import page
 from server.reports.experiments import pictures, tilt_claims
-from server.reports.experiments.carrying import Tables
+from server.reports.experiments.carrying import Tables, file_of
 from server.reports.experiments.claims import findings, scatter
 from server.reports.experiments.designs import MISSING, RIGID, Experiment
 from server.reports.experiments.scatter_claims import LABELS, Scatter
@@ -55,7 +55,7 @@ def part(studies: Sequence[Experiment], tables: Tables) -> Part:
         tables=numbers,
         body=tuple(_body(studies, tables, shown, numbers["section6_scatter"])),
         unknowns=UNKNOWNS,
-        raw={f"section6_{key}.csv": table.csv() for key, table in tables.items()},
+        raw={file_of(key): table.csv() for key, table in tables.items()},
     )
 
 
