@@ -17,6 +17,29 @@ from server.studies.study import Study
 TILTS = [20, 25, 30]
 
 
+CLUELESS = """
+from control.controllers import controllers
+from control.registry import Parameters
+
+
+@controllers.register
+class Clueless:
+    name = "clueless"
+    title = "Clueless"
+    summary = "Knows nothing."
+
+    class Parameters(Parameters):
+        pass
+
+    def __init__(self, parameters):
+        pass
+
+    def step(self, situation):
+        raise ValueError("no idea")
+"""
+"""A plug-in whose controller fails at once."""
+
+
 def definition(repeats: int = 4, **changes: Any) -> StudyDefinition:
     """Three tilts on the slip plant; by a controller whose walks are plain Python: nothing has to be compiled."""
     whole: dict[str, Any] = {

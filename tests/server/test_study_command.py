@@ -4,7 +4,7 @@ import json
 import sys
 
 import pytest
-from study_bench import definition, table_of
+from study_bench import CLUELESS, definition, table_of
 
 from control.controllers import controllers
 from server import cli
@@ -91,28 +91,6 @@ def test_what_cannot_be_carried_out_is_refused_before_anything_begins(pivotrig, 
     status, _, err = pivotrig("study", file)
     assert (status, words in err) == (2, True), err
     assert StudyStore(tmp_path / "data").all() == []
-
-
-CLUELESS = """
-from control.controllers import controllers
-from control.registry import Parameters
-
-
-@controllers.register
-class Clueless:
-    name = "clueless"
-    title = "Clueless"
-    summary = "Knows nothing."
-
-    class Parameters(Parameters):
-        pass
-
-    def __init__(self, parameters):
-        pass
-
-    def step(self, situation):
-        raise ValueError("no idea")
-"""
 
 
 @pytest.fixture

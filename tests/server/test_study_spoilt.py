@@ -10,7 +10,7 @@ from fcntl import LOCK_SH, flock
 from threading import Timer
 
 import pytest
-from study_bench import carried_out, definition
+from study_bench import CLUELESS, carried_out, definition
 
 from control.controllers import controllers
 from control.plugins import load_file
@@ -19,27 +19,6 @@ from server.studies.carrying_out import Carried
 from server.studies.condition import Claim, is_claimed
 from server.studies.errors import NoSuchStudy, StudyStoreError
 from server.studies.store import StudyStore
-
-CLUELESS = """
-from control.controllers import controllers
-from control.registry import Parameters
-
-
-@controllers.register
-class Clueless:
-    name = "clueless"
-    title = "Clueless"
-    summary = "Knows nothing."
-
-    class Parameters(Parameters):
-        pass
-
-    def __init__(self, parameters):
-        pass
-
-    def step(self, situation):
-        raise ValueError("no idea")
-"""
 
 
 @pytest.fixture(scope="module")
