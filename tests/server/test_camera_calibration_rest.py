@@ -122,6 +122,10 @@ async def test_clicked_corners_and_marks_give_a_plane_with_an_honest_word_about_
         )
 
 
+def is_refused_for_its_calibration_alone(state):
+    return state["tracking"] == "locked" and [fault["code"] for fault in state["faults"]] == ["calibration"]
+
+
 async def test_another_camera_s_calibration_keeps_the_rig_from_arming_and_both_are_named(serve, tmp_path):
     path = tmp_path / "rig.toml"
     async with wizard(serve, path) as page:
@@ -130,8 +134,7 @@ async def test_another_camera_s_calibration_keeps_the_rig_from_arming_and_both_a
         await page.ask("POST", "/calibration/save")
     path.write_text(path.read_text().replace('"simulated camera"', '"usb 046d:0825 ABC123"'))
     async with wizard(serve, path) as page:
-        state = await page.until(lambda state: state["tracking"] == "locked")
-        assert [fault["code"] for fault in state["faults"]] == ["calibration"]
+        await page.until(is_refused_for_its_calibration_alone)
         refused = await page.ask("POST", "/arm", 409)
         assert '"usb 046d:0825 ABC123"' in refused["detail"]
         assert '"simulated camera"' in refused["detail"]

@@ -88,6 +88,7 @@ def walk_until_it_hangs(server: Server, controller: str, mark: Path) -> float:
     return time.monotonic()
 
 
+@pytest.mark.exclusive
 def test_a_controller_that_never_answers_loses_the_coils_and_is_named(
     board: tuple[RemoteBoard, Path], plugin: Path, mark: Path, tmp_path: Path
 ) -> None:
