@@ -17,16 +17,7 @@ pytestmark = pytest.mark.exclusive
 RUNS = 100_000
 ALLOWED = 0.050
 """For one page, s."""
-SLOWER_COMPUTER = 4.0
-"""The 50 ms are for the full tests, on a computer that one knows; elsewhere a page that needs a whole table shows
-by being some ten times as slow."""
-TIMES = 5
-
-
-@pytest.fixture(scope="module")
-def allowed(full: bool) -> float:
-    """For one page, s."""
-    return ALLOWED if full else SLOWER_COMPUTER * ALLOWED
+TIMES = 15
 
 
 @pytest.fixture(scope="module")
@@ -66,7 +57,7 @@ QUERIES = {
 
 
 def test_every_page_of_a_hundred_thousand_runs_comes_within_50_ms(
-    large: Catalogue, allowed: float, capsys: pytest.CaptureFixture[str]
+    large: Catalogue, capsys: pytest.CaptureFixture[str]
 ) -> None:
     times = {name: took(lambda query=query: large.page(query)) for name, query in QUERIES.items()}
     second = large.page().next
@@ -77,11 +68,11 @@ def test_every_page_of_a_hundred_thousand_runs_comes_within_50_ms(
     with capsys.disabled():
         print("\n" + "\n".join(f"  {name:<25} {value * 1e3:5.1f} ms" for name, value in times.items()))
     assert large.page().total == RUNS
-    assert {name: value for name, value in times.items() if not value <= allowed} == {}
+    assert {name: value for name, value in times.items() if not value <= ALLOWED} == {}
 
 
-def test_a_large_catalogue_opens_and_changes_at_once(large: Catalogue, allowed: float) -> None:
+def test_a_large_catalogue_opens_and_changes_at_once(large: Catalogue) -> None:
     newest = large.page(limit=1).runs[0].id
-    assert took(lambda: large.update(newest, notes="new")) <= allowed
-    assert took(lambda: Catalogue.open(large.path.parent).close()) <= allowed
-    assert took(lambda: large.get(newest)) <= allowed
+    assert took(lambda: large.update(newest, notes="new")) <= ALLOWED
+    assert took(lambda: Catalogue.open(large.path.parent).close()) <= ALLOWED
+    assert took(lambda: large.get(newest)) <= ALLOWED
