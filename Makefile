@@ -6,7 +6,7 @@ JOBS ?= 2
 EVERY_TEST = $(BIN)/pytest -n $(JOBS) -m "not exclusive" && \
 	$(BIN)/pytest -m exclusive tests/browser && $(BIN)/pytest -m exclusive --ignore=tests/browser
 
-.PHONY: run setup test test-full lint format bench safety mutate clean browser toolchain help
+.PHONY: run setup test test-full lint format bench screenshots safety mutate clean browser toolchain help
 
 help: ## show this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | expand -t 14
@@ -16,18 +16,19 @@ run: .stamps/run ## open the dashboard of the simulated rig
 
 setup: .stamps/dev ## make the environment, with all that tests need
 
-test: .stamps/dev browser toolchain ## run every test
+test: .stamps/dev .stamps/page browser toolchain ## run every test
 	$(EVERY_TEST)
 
 test-full: export PIVOTRIG_FULL := 1
-test-full: .stamps/dev browser toolchain ## the same tests with the full numbers of repetitions
+test-full: .stamps/dev .stamps/page browser toolchain ## the same tests with the full numbers of repetitions
 	$(EVERY_TEST)
 
-lint: .stamps/dev ## style, types and the folder rules
+lint: .stamps/dev .stamps/page ## style, types and the folder rules
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/lint-imports
 	$(BIN)/pyright
+	bash .ci/javascript/types
 
 format: .stamps/dev ## put the code into its layout
 	$(BIN)/ruff check --fix .
@@ -35,6 +36,9 @@ format: .stamps/dev ## put the code into its layout
 
 safety: .stamps/dev ## try every fault out and write the table of reaction times
 	$(BIN)/python -m tests.faults.table
+
+screenshots: .stamps/dev browser ## take the pictures of the README anew
+	$(BIN)/python tests/browser/screenshots.py
 
 bench: .stamps/dev ## measure, against a reference in the same run
 	$(BIN)/python -m tests.benchmarks
@@ -57,6 +61,11 @@ toolchain:
 .stamps/dev: pyproject.toml uv.lock
 	@bash .ci/environment
 	@touch $@ .stamps/run
+
+# What checks the page: TypeScript and axe-core, for the node that pyright brings along.
+.stamps/page: .stamps/dev .ci/javascript/package-lock.json .ci/javascript/install
+	@bash .ci/javascript/install
+	@touch $@
 
 mutate: .stamps/dev toolchain ## change the safety-critical code a line at a time: does a test notice? (an hour)
 	$(BIN)/python -m tests.mutation

@@ -78,14 +78,16 @@ class Carried:
 
 @dataclass(frozen=True, slots=True)
 class Grip:
-    """How the field holds the body.
+    """How the field holds the body, from when it comes up until it goes off: after that nothing is known of it.
 
+    hold: which field it is, by when it was at full strength, s; inf: none.
     slack: where the body lies within the play, rad, within +- half of it.
     pull: how far the field has turned since it last reversed, rad, signed.
     pivot: the end it presses down; None before the first motion.
     turned: how far the body has turned about that end since it took it, rad, signed.
     """
 
+    hold: float = math.inf
     slack: float = 0.0
     pull: float = 0.0
     pivot: Pivot | None = None
@@ -101,7 +103,8 @@ class Grip:
         slack = max(-half_play, min(half_play, self.slack + turn.angle))
         pull = pull_after(self.pull, turn.angle)
         follows = turn.angle + self.slack - slack
-        return Grip(slack, pull, turn.pivot, follows + (self.turned if turn.pivot == self.pivot else 0.0))
+        turned = follows + (self.turned if turn.pivot == self.pivot else 0.0)
+        return Grip(self.hold, slack, pull, turn.pivot, turned)
 
 
 class Estimator:
@@ -195,6 +198,8 @@ class Estimator:
     def _motion(self, start: float, end: float) -> Motion:
         """The body's motion from `start` to `end` (s), as the field has led it."""
         settings, grip = self._settings, self._grip
+        if grip.hold != self._field.full_at:
+            grip = Grip(self._field.full_at)  # it came up along the body's heading: the body lies amid its play
         delay, elapsed = settings.actuation_delay, max(end - start, 0.0)
         departure = arrival = Pose(*self._filter.mean)
         position, heading = settings.noise(elapsed, is_held=self._field.is_ready)

@@ -105,6 +105,11 @@ class Field:
         """On, and at full strength."""
         return self._on and self._time >= self._full_at
 
+    @property
+    def full_at(self) -> float:
+        """When the field reaches or reached full strength since it was last off, s; inf while it is off."""
+        return self._full_at if self._on else math.inf
+
     def heading_at(self, time: float) -> float:
         """The field's heading at a recent `time`, rad, unwrapped."""
         earlier, later, share = self._about(time)

@@ -22,8 +22,9 @@ class Steering:
         self._manual = Manual()
 
     def take(self, jog: Jog, pose: Pose | None, now: float) -> None:
-        """Swing by hand from `now` (s) on; raises `Refused` where that leads out of the workspace."""
-        if pose is not None and self._guard.leads_out(pose, jog.pivot, jog.rate * HOLD):
+        """Swing by hand from `now` (s) on; raises `Refused` where that leads out of the workspace, which to stop
+        never does."""
+        if jog.rate != 0.0 and pose is not None and self._guard.leads_out(pose, jog.pivot, jog.rate * HOLD):
             raise Refused("this swing leads out of the workspace; swing the other way or about the other end")
         self._manual.take(jog, now)
 

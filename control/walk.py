@@ -77,14 +77,17 @@ class Walk:
         self.walker.controller = case(self.walker.controller)
 
     def change(self, selection: Selection) -> None:
-        """Go on with another choice; a new path starts at its beginning."""
+        """Go on with another choice; a new path starts at its beginning, and so does another controller."""
         if selection.trajectory != self.request.selection.trajectory:
             self.trajectory = selection.build_trajectory()
             self._reference = self._reference_on(self.trajectory, selection.gait)
             self._began = self.elapsed
         else:
             self._reference.change(selection.gait)
-        self.walker.change(self._case(selection.build_controller()), selection.gait)
+        controller = self.walker.controller
+        if selection.controller != self.request.selection.controller:
+            controller = self._case(selection.build_controller())
+        self.walker.change(controller, selection.gait)
         self.request = replace(self.request, selection=selection)
 
     def step(

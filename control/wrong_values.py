@@ -6,6 +6,8 @@ from collections.abc import Callable
 
 from pydantic import ValidationError
 
+SECRET_FIELDS = frozenset({"webhook_url"})
+"""Fields whose values are told to nobody, not even when they are wrong."""
 LONGEST_GIVEN = 100
 """Characters that are shown of what was given: enough to find it again."""
 
@@ -22,7 +24,8 @@ def in_words(error: ValidationError, place: Callable[[tuple[str | int, ...]], st
         is_one_value = problem["type"] not in ("missing", "extra_forbidden") and not isinstance(
             problem["input"], dict
         )
-        given = f" (given: {_cut(repr(problem['input']))})" if is_one_value else ""
+        may_be_told = is_one_value and SECRET_FIELDS.isdisjoint(problem["loc"])
+        given = f" (given: {_cut(repr(problem['input']))})" if may_be_told else ""
         lines.append(f"  {where}: {problem['msg']}{given}{place(problem['loc'])}")
     return "\n".join(lines)
 

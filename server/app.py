@@ -8,12 +8,14 @@ from collections.abc import AsyncIterator, Collection
 from contextlib import asynccontextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+from uuid import uuid4
 
 from fastapi import APIRouter, FastAPI
 from starlette.responses import FileResponse
 
 import web
 from server.api import (
+    about,
     actions,
     again,
     calibration,
@@ -24,6 +26,7 @@ from server.api import (
     exports,
     faults,
     manual,
+    notifications,
     overview,
     ports,
     problems,
@@ -32,6 +35,7 @@ from server.api import (
     rig_file,
     run_catalogue,
     runs,
+    scene,
     selection,
     simulated_board,
     state,
@@ -47,7 +51,10 @@ from server.calibration.runs import CalibrationRuns
 from server.colour_picker import ColourPicker
 from server.door import Door
 from server.exports.work import Workshop
+from server.fault_watch import FaultWatch
 from server.fresh_files import ALWAYS_ASK, FreshFiles
+from server.jog_order import JogOrder
+from server.notifier import Notifier
 from server.pictures import Pictures
 from server.replay.sessions import ReplaySessions
 from server.retrack.desk import RetrackDesk
@@ -55,6 +62,7 @@ from server.rig_life import ENDED
 from server.scene.feed import SceneFeed
 from server.scene.live import LiveView
 from server.scene.routes import add_scene_routes
+from server.scene.viewers.known import Viewers
 from server.studies.desk import StudyDesk
 from server.studies.learning import Learning
 from server.upkeep import Upkeep
@@ -100,6 +108,8 @@ ROOMS = (
     faults,
     ports,
     vision,
+    notifications,
+    about,
 )
 """One router a resource."""
 
@@ -120,6 +130,7 @@ def create_app(
         redoc_url=None,
         lifespan=lifespan,
     )
+    app.state.start = uuid4().hex
     app.state.rig = rig
     app.state.archive = archive
     app.state.rig_changes = changes
@@ -128,11 +139,15 @@ def create_app(
     app.state.calibration_runs = CalibrationRuns(rig)
     app.state.colour_picker = ColourPicker(rig)
     app.state.tick_text = TickText()
+    app.state.jog_order = JogOrder()
+    app.state.fault_watch = FaultWatch(rig)
+    app.state.viewers = Viewers()
     app.state.scene = SceneFeed(rig.updates, LiveView(rig))
     app.state.replays = ReplaySessions()
     app.state.workshop = Workshop()
     app.state.retracks = RetrackDesk()
     app.state.studies = StudyDesk(rig, archive)
+    app.state.notifier = Notifier(rig)
     app.state.study_json = StudyJson(app.state.studies)
     app.state.learning = Learning(app.state.studies)
     app.add_middleware(Door, hosts=hosts)
@@ -153,8 +168,10 @@ async def lifespan(app: FastAPI) -> AsyncIterator[None]:
         raise
     try:
         upkeep.start()
+        app.state.notifier.start()
         await app.state.pictures.start()
         await start_scene(scene)
+        await app.state.page_files.version()
         if changes is not None:
             changes.start()
         yield
@@ -167,6 +184,7 @@ async def lifespan(app: FastAPI) -> AsyncIterator[None]:
                 await app.state.calibration_runs.stop()
                 await app.state.retracks.stop()
                 await app.state.learning.close()
+                await app.state.notifier.stop()
                 if changes is not None:
                     await changes.stop()
                 end_streams(app)
@@ -207,15 +225,13 @@ def add_routes(app: FastAPI) -> None:
         api.include_router(room.router)
     api.include_router(camera.sockets)
     api.include_router(replay.sockets)
+    api.include_router(scene.sockets)
     app.include_router(api)
-    app.add_api_route("/", page, include_in_schema=False)
+    files = app.state.page_files = FreshFiles(WEB_FOLDER)
+    app.add_api_route("/", files.page, include_in_schema=False)
     app.add_api_route("/docs", docs, include_in_schema=False)
     add_scene_routes(app)
-    app.mount("/static", FreshFiles(directory=WEB_FOLDER))
-
-
-async def page() -> FileResponse:
-    return FileResponse(WEB_FOLDER / "index.html", headers=ALWAYS_ASK)
+    app.mount("/static", files)
 
 
 async def docs() -> FileResponse:

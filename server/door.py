@@ -17,6 +17,7 @@ from starlette.datastructures import Headers, MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from server.api.problems import Problem, internal_error
+from server.page_policy import content_policy
 
 log = logging.getLogger(__name__)
 
@@ -24,6 +25,9 @@ SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
 LOOPBACK_NAMES = frozenset({"localhost", "127.0.0.1", "[::1]"})
 OWN_SITES = frozenset({"same-origin", "none"})
 """Values of Sec-Fetch-Site that may change something; "same-site" includes other programs on this machine."""
+
+REFUSED_FEATURES = "camera=(), microphone=(), geolocation=(), payment=(), usb=(), serial=(), bluetooth=()"
+"""What of the looking computer no page of ours ever asks for."""
 
 BODY_LIMIT = 1 << 20
 """Largest request body, bytes; the longest honest one, a drawn path of some thousand points, has 100 kB."""
@@ -250,26 +254,6 @@ def capped(receive: Receive, send: Send, limit: int) -> Receive:
     return receive_capped
 
 
-def content_policy(path: str, host: str) -> str:
-    """The Content-Security-Policy of a path: strict, and wider only for the two pages that we do not write.
-
-    The socket sources are named with their host, because not every browser counts them as 'self'.
-    """
-    sockets = f"ws://{host} wss://{host}"
-    if path.startswith("/scene"):  # the 3D client is one file of inlined modules, WebAssembly and workers
-        return (
-            "default-src 'none'; script-src 'self' 'unsafe-inline' 'unsafe-eval' blob: data:; "
-            "style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; font-src 'self' data:; "
-            f"connect-src 'self' {sockets} data: blob:; worker-src 'self' blob: data:; "
-            "form-action 'none'; base-uri 'none'; frame-ancestors 'self'"
-        )
-    style = "'self' 'unsafe-inline'" if path == "/docs" or path.endswith("/report") else "'self'"
-    return (
-        f"default-src 'self'; connect-src 'self' {sockets}; img-src 'self' blob: data:; style-src {style}; "
-        "object-src 'none'; base-uri 'none'; form-action 'self'; frame-ancestors 'self'"
-    )
-
-
 def with_headers(scope: Scope, send: Send) -> Send:
     """A send that adds the headers which keep a browser from lending this page to others."""
     host = shown(Headers(scope=scope).get("host", ""))
@@ -283,6 +267,7 @@ def with_headers(scope: Scope, send: Send) -> Send:
             headers["Referrer-Policy"] = "no-referrer"
             headers["Cross-Origin-Resource-Policy"] = "same-origin"
             headers["Cross-Origin-Opener-Policy"] = "same-origin"
+            headers["Permissions-Policy"] = REFUSED_FEATURES
             headers.setdefault("Cache-Control", "no-store")
         await send(message)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 from control.model import Frame
@@ -16,6 +17,15 @@ if TYPE_CHECKING:
     from server.rig import Rig
 
 View = Literal["raw", "overlay", "mask"]
+
+
+@dataclass(frozen=True, slots=True)
+class Picture:
+    """One encoded frame. index: the frame's.  captured_at: mid-exposure on the rig's clock, s."""
+
+    index: int
+    captured_at: float
+    jpeg: bytes
 
 
 class Pictures:
@@ -32,15 +42,15 @@ class Pictures:
     def close(self) -> None:
         self._thread.shutdown(cancel_futures=True)
 
-    async def newer_than(self, index: int | None, view: View) -> tuple[int, bytes]:
-        """The newest picture whose frame is not `index`, and its frame's index; waits for one.
+    async def newer_than(self, index: int | None, view: View) -> Picture:
+        """The newest picture whose frame is not `index`; waits for one.
 
         Raises StreamEnded when the rig has stopped.
         """
         async with self._rig.updates.subscribe() as ticks:
             while (frame := self._rig.frame) is None or frame.index == index or self._rig.updates.closed:
                 await ticks.get()
-        return frame.index, await self.encoded(frame, view)
+        return Picture(frame.index, frame.captured_at, await self.encoded(frame, view))
 
     async def encoded(self, frame: Frame, view: View) -> bytes:
         encoded, made = self._made.get(view, (None, None))

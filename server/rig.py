@@ -45,12 +45,15 @@ class Rig(RigLife):
 
     # Requests ------------------------------------------------------------------------------------
 
-    async def select(self, selection: Selection) -> None:
-        """Choose what the next run uses; raises `OutsideWorkspace` and what a bad choice raises."""
+    async def select(self, selection: Selection, by: str | None = None) -> None:
+        """Choose what the next run uses; raises `OutsideWorkspace` and what a bad choice raises.
+
+        by: who chooses, in the client's own words, so that it knows its own choice when everybody is told of it.
+        """
         check_inside(selection.build_trajectory(), self.coils.workspace)
         selection.build_controller()
         self.selection = selection
-        self.announcements.publish({"type": "rig", "selection": selection_json(selection)})
+        self.announcements.publish({"type": "rig", "selection": selection_json(selection), "by": by})
 
     async def arm(self, *, consent: bool = False) -> None:
         """consent: the operator agrees that current flows through real coils."""
@@ -215,9 +218,13 @@ class Rig(RigLife):
 
     def reference_points(self) -> NDArray[np.float64]:
         """(n, 2) points of the path that is walked or selected, m."""
+        return points_of(Selection(trajectory=self.walked.trajectory).build_trajectory())
+
+    @property
+    def walked(self) -> Selection:
+        """What the run that is on walks by; while there is none, what the next one will."""
         running = self.snapshot.run is not None and self.runs
-        selection = self.runs[0].request.selection if running else self.selection
-        return points_of(Selection(trajectory=selection.trajectory).build_trajectory())
+        return self.runs[0].request.selection if running else self.selection
 
     def trail(self) -> NDArray[np.float64]:
         """(n, 2) recent estimates, m, oldest first."""

@@ -19,6 +19,7 @@ from control.snapshot import RigState
 from server.atomic_save import previous_of
 from server.exchange import rehearse
 from server.rig_file import Plan, RigFileError, RigStore, differences
+from server.rig_import import exported, listed, plan_of_text
 from server.settings import RigFile
 
 if TYPE_CHECKING:
@@ -26,7 +27,9 @@ if TYPE_CHECKING:
 
 log = logging.getLogger(__name__)
 
-LIVE = frozenset({"name", "version"})
+LIVE = frozenset(
+    {"name", "version", "notifications.webhook_url", "notifications.on", "notifications.timeout_s"}
+)
 """Fields that no part of the machine is built from; they change at once, in any state."""
 
 LOOKS = (
@@ -108,6 +111,20 @@ class RigChanges:
         """Back to the file as it was before the last save, which becomes the previous one itself."""
         async with self._one_at_a_time:
             return await self._apply_and_save(await asyncio.to_thread(self._store.plan_of_previous))
+
+    def exported(self) -> str:
+        """The file's text as it may be given away."""
+        return exported(self._store)
+
+    async def look_at(self, text: str) -> list[dict[str, Any]]:
+        """What the text of another rig file would change; raises `RigFileError`."""
+        plan = await asyncio.to_thread(plan_of_text, self._store, text)
+        return listed(self._store.settings, plan)
+
+    async def take(self, text: str) -> Change:
+        """Take another rig file's text over whole; raises `RigFileError`, `Refused`."""
+        async with self._one_at_a_time:
+            return await self._apply_and_save(await asyncio.to_thread(plan_of_text, self._store, text))
 
     async def reload(self) -> Change:
         """Take the file as it is on the disk; raises `RigFileError`, `Refused`."""

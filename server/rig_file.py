@@ -14,9 +14,9 @@ import tomlkit
 from pydantic import ValidationError
 
 from server.atomic_save import Staged, keep_previous, previous_of
+from server.rig_secrets import with_secrets
 from server.section import Section, in_words
 from server.settings import FORMAT, RigFile
-from vision.sources.addresses import shown
 
 NAME = "rig.toml"
 """The rig file that the data folder may hold."""
@@ -138,14 +138,6 @@ def merged(values: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, A
     return result
 
 
-def with_login(changes: Mapping[str, Any], uri: str) -> dict[str, Any]:
-    """The changes, but for a camera's URI that comes back as it was shown: it is the one that the rig has."""
-    camera = changes.get("camera")
-    if isinstance(camera, Mapping) and camera.get("uri") == shown(uri):
-        return {**changes, "camera": {**camera, "uri": uri}}
-    return dict(changes)
-
-
 def differences(before: Section, after: Section, prefix: str = "") -> tuple[str, ...]:
     """Dotted names of the fields whose values differ."""
     names: list[str] = []
@@ -170,9 +162,9 @@ def with_settings(text: str, before: RigFile, after: RigFile) -> str:
     try:
         _write(document, before, after)
     except ValueError:  # tomlkit puts no table into an inline one
-        return _written_anew(after)
+        return written_anew(after)
     changed = tomlkit.dumps(document)
-    return changed if _says(changed, after) else _written_anew(after)
+    return changed if _says(changed, after) else written_anew(after)
 
 
 def _says(text: str, settings: RigFile) -> bool:
@@ -182,7 +174,8 @@ def _says(text: str, settings: RigFile) -> bool:
         return False
 
 
-def _written_anew(settings: RigFile) -> str:
+def written_anew(settings: RigFile) -> str:
+    """A rig file's text with every value and no comments."""
     return HEADING + tomlkit.dumps(settings.model_dump(mode="json", exclude_none=True))
 
 
@@ -240,7 +233,7 @@ class RigStore:
 
     def plan(self, changes: Mapping[str, Any]) -> Plan:
         """What `changes` make of the file; raises ValidationError or `RigFileError`, and changes nothing."""
-        asked = with_login(changes, self.settings.camera.uri)
+        asked = with_secrets(changes, self.settings)
         wanted = RigFile.model_validate(merged(self.settings.model_dump(mode="json"), asked))
         text = with_settings(self.text, self.settings, wanted)
         return Plan(text, wanted, differences(self.settings, wanted))

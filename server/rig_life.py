@@ -18,13 +18,13 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from control.coils import CoilSet
 from control.model import Frame
 from control.news import Announcement
-from control.runs import Selection
+from control.runs import RunState, Selection
 from control.safety import Refused
 from control.simulation.faults.injection import Faults
 from control.snapshot import RigState, Snapshot
 from server.assembly import Machine, build_machine
 from server.custom_trajectories import CustomTrajectories
-from server.event_log import EventLog
+from server.event_log import Event, EventLog, Told
 from server.exchange import Build
 from server.occupation import Occupation
 from server.rig_thread import RigThread
@@ -66,7 +66,7 @@ class RigLife:
         self._build = build or (lambda settings: build_machine(settings, realtime=True))
         self._loop = machine.loop
         self._recording = RunRecording(recorder)
-        self._lines: deque[Announcement] = deque(maxlen=LINES_WAITING)
+        self._lines: deque[Told] = deque(maxlen=LINES_WAITING)
         self._thread = RigThread()
         self._task: asyncio.Task[None] | None = None
         self._watchdog = Watchdog(lambda: self._loop.deciding)
@@ -102,7 +102,7 @@ class RigLife:
         return self._machine.faults
 
     @property
-    def events(self) -> Sequence[Announcement]:
+    def events(self) -> Sequence[Event]:
         """What has happened, oldest first."""
         return self._log.entries
 
@@ -242,7 +242,7 @@ class RigLife:
         """On the rig's thread: what the loop has to tell goes to the recording in the order in which it happened."""
         for line in self._loop.take_announcements():
             self._recording.tell(line)
-            self._lines.append(line)
+            self._lines.append(Told.now(line, self._run_id()))
         for ended in self._loop.take_ended():
             self._recording.end(ended)
             self.runs.end(ended)
@@ -280,7 +280,12 @@ class RigLife:
         """Put something into the event log and tell everybody who watches."""
         line = Announcement(self.snapshot.time, severity, code, message)
         self._recording.tell(line)
-        self._log.add(line)
+        self._log.add(Told.now(line, self._run_id()))
+
+    def _run_id(self) -> str:
+        """Of the run that goes on, or ""."""
+        newest = next(iter(self.runs), None)
+        return newest.id if newest is not None and newest.state is RunState.RUNNING else ""
 
     # Between two ticks ---------------------------------------------------------------------------
 

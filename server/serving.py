@@ -24,8 +24,10 @@ from server.app import create_app, end_streams
 from server.archive import Archive
 from server.assembly import Machine, build_machine
 from server.catalogue.errors import CatalogueError
+from server.custom_trajectories import NAME as TRAJECTORIES
 from server.door import MESSAGE_LIMIT
 from server.exchange import Build
+from server.garbage import set_aside
 from server.rig import Rig
 from server.rig_changes import RigChanges
 from server.rig_file import RigStore
@@ -72,8 +74,12 @@ def serve_rig(
         raise
     address = _address(listener) + place.fragment
     rig = Rig(machine, build, archive.recorder)
+    for problem in rig.custom_trajectories.open(data / TRAJECTORIES):
+        rig.announce("warn", "trajectories", problem)
     application = create_app(rig, archive, changes=RigChanges(rig, store, as_run))
+    application.state.notifier.address = address
     server = _Server(rig, application, address, open_browser)
+    set_aside()  # the greater part before the loop runs, which a search would hold up
     with listener, handled({ESTOP: server.handle_estop, signal.SIGHUP: server.handle_exit}):
         server.run(sockets=[listener])
     if server.failure is not None:
@@ -145,6 +151,7 @@ class _Server(uvicorn.Server):
         if self.should_exit:
             self.failure = self._rig.failure or RuntimeError("start-up failed, see above")
             return
+        set_aside()
         print(f"dashboard: {self._address}", flush=True)
         if self._open_browser:
             webbrowser.open(self._address)
@@ -165,7 +172,8 @@ def _listen(host: str, port: int) -> socket.socket:
             f"{host} can be reached from outside, which needs a login that this version does not have; use 127.0.0.1"
         )
     family = socket.AF_INET6 if ":" in host else socket.AF_INET
-    listener = socket.socket(family, socket.SOCK_STREAM)
+    # Asyncio sends at once only on what is called TCP; else an answer waits 40 ms for its reader's receipt.
+    listener = socket.socket(family, socket.SOCK_STREAM, socket.IPPROTO_TCP)
     try:
         listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         listener.bind((host, port))

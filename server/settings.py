@@ -14,6 +14,7 @@ from control.simulation.rigid.parameters import RigidParameters
 from control.simulation.wiring import Wiring
 from server.camera_sections import LIVE, SIMULATED_CAMERA, CameraSection
 from server.coil_sections import Coils, LimitsSection, PerCoil, RegistrationSection
+from server.notification_section import NotificationsSection, shown_webhook
 from server.recording_section import RecordingSection
 from server.section import NOT_MEASURED, Section
 from server.vision_section import VisionSection
@@ -161,6 +162,7 @@ class RigFile(Section):
     estimator: EstimatorSection = EstimatorSection()
     gait: GaitSection = GaitSection()
     recording: RecordingSection = RecordingSection()
+    notifications: NotificationsSection = NotificationsSection()
     simulation: SimulationSection = SimulationSection()
 
     @property
@@ -201,9 +203,16 @@ class RigFile(Section):
         return self
 
     def to_public(self) -> dict[str, Any]:
-        """The values as the outside sees them: without the login of a network camera."""
+        """The values as the outside sees them: without the login of a network camera and a webhook's key."""
         values = {**self.model_dump(mode="json"), "simulated": self.is_simulated}
         values["camera"]["uri"] = shown(self.camera.uri)
+        values["notifications"]["webhook_url"] = shown_webhook(self.notifications.webhook_url)
+        return values
+
+    def to_recorded(self) -> dict[str, Any]:
+        """The values that a run was made with; who is told of its end is none of them."""
+        values = self.to_public()
+        del values["notifications"]
         return values
 
     def with_simulation(self, **changes: Any) -> RigFile:

@@ -20,7 +20,7 @@ class GeometricParameters(Parameters):
         le=100.0,
         title="Gain k",
         description="Swing rate per distance from the reference: the rate is k times the distance.",
-        json_schema_extra={"unit": "1/(cm·s)"},
+        json_schema_extra={"unit": "1/(cm·s)", "live": True, "step": 0.1},
     )
 
 

@@ -46,7 +46,7 @@ class GradientParameters(HeadingParameters):
     look_ahead_s: float | None = Field(
         default=None, gt=0.0, le=5.0, title="Look-ahead",
         description="How far ahead the arc is predicted; left out, it follows from the sweep.",
-        json_schema_extra={"unit": "s"},
+        json_schema_extra={"unit": "s", "live": True, "step": 0.1},
     )  # fmt: skip
 
 

@@ -22,15 +22,16 @@ class HeadingParameters(Parameters):
         default="free",
         title="Heading",
         description="free: position only; along or across the path; fixed: the angle below.",
+        json_schema_extra={"live": True},
     )
     heading_deg: float = Field(
         default=0.0, ge=-360.0, le=360.0, title="Fixed heading", description="For a fixed heading.",
-        json_schema_extra={"unit": "°"},
+        json_schema_extra={"unit": "°", "live": True, "step": 5},
     )  # fmt: skip
     heading_weight: float = Field(
         default=0.01, ge=0.0, le=100.0, title="Heading weight",
         description="At 1, a heading error of one radian counts like a position error of one robot length.",
-        json_schema_extra={"unit": "1"},
+        json_schema_extra={"unit": "1", "live": True, "step": 0.01},
     )  # fmt: skip
 
     @property

@@ -14,15 +14,16 @@ from control.registry import Parameters
 class HoldParameters(Parameters):
     heading_deg: float = Field(
         default=90.0, ge=-360.0, le=360.0, title="Heading", description="Direction of walking to keep.",
-        json_schema_extra={"unit": "°"},
+        json_schema_extra={"unit": "°", "live": True, "step": 5},
     )  # fmt: skip
     gain: float = Field(
         default=2.0, gt=0.0, le=20.0, title="Gain", description="Swing rate per heading error.",
-        json_schema_extra={"unit": "1/s"},
+        json_schema_extra={"unit": "1/s", "live": True, "step": 0.1},
     )  # fmt: skip
     tolerance_deg: float = Field(
         default=0.5, ge=0.0, le=20.0, title="Tolerance",
-        description="A smaller heading error is left alone.", json_schema_extra={"unit": "°"},
+        description="A smaller heading error is left alone.",
+        json_schema_extra={"unit": "°", "live": True, "step": 0.1},
     )  # fmt: skip
 
 

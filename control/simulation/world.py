@@ -22,6 +22,10 @@ LONGEST_ADVANCE = 1000
 """The board is asked for no more milliseconds at once than this, so that no request grows without bound."""
 
 
+Listener = Callable[[Sequence[Vector]], None]
+"""Takes the currents (A) of the pairs x, y, z at the end of each millisecond that has just gone by."""
+
+
 class Board(Protocol):
     """The drive electronics with the coils' inductance and resistance: the twin, or another over a port."""
 
@@ -64,6 +68,7 @@ class World:
         self._milliseconds = 0
         self._currents = ZERO
         self._visitors: list[Callable[[], None]] = []
+        self._listeners: list[Listener] = []
 
     @property
     def now(self) -> float:
@@ -91,6 +96,17 @@ class World:
     def attend(self, visitor: Callable[[], None]) -> None:
         """Have `visitor` called before each step of the world, on the thread that moves it."""
         self._visitors.append(visitor)
+
+    def listen(self, listener: Listener) -> Callable[[], None]:
+        """Have `listener` told of the true currents, as they come, on the thread that moves the world.
+
+        Returns what ends that.
+        """
+        self._listeners = [*self._listeners, listener]
+        return lambda: self._forget(listener)
+
+    def _forget(self, listener: Listener) -> None:
+        self._listeners = [each for each in self._listeners if each is not listener]
 
     def advance_to(self, time: float) -> None:
         """Run on in whole milliseconds up to `time` (s); a time that has passed already changes nothing."""
@@ -121,3 +137,5 @@ class World:
             plant.step((north * bx, north * by, north * bz), STEP)
         self._currents = currents[-1]
         self._milliseconds += milliseconds
+        for tell in self._listeners:
+            tell(currents)

@@ -15,9 +15,11 @@ from server.pictures import Pictures
 
 if TYPE_CHECKING:
     from server.archive import Archive
+    from server.fault_watch import FaultWatch
     from server.replay.sessions import ReplaySessions
     from server.rig import Rig
     from server.rig_changes import RigChanges
+    from server.scene.viewers.known import Viewers
 
 
 async def the_rig(connection: HTTPConnection) -> Rig:
@@ -40,8 +42,16 @@ async def the_pictures(connection: HTTPConnection) -> Pictures:
     return connection.app.state.pictures
 
 
+async def the_viewers(connection: HTTPConnection) -> Viewers:
+    return connection.app.state.viewers
+
+
 async def the_tick_text(connection: HTTPConnection) -> TickText:
     return connection.app.state.tick_text
+
+
+async def the_fault_watch(connection: HTTPConnection) -> FaultWatch:
+    return connection.app.state.fault_watch
 
 
 TheRig = Annotated["Rig", Depends(the_rig)]
@@ -49,4 +59,6 @@ TheArchive = Annotated["Archive", Depends(the_archive)]
 TheReplays = Annotated["ReplaySessions", Depends(the_replays)]
 TheChanges = Annotated["RigChanges | None", Depends(the_changes)]
 ThePictures = Annotated[Pictures, Depends(the_pictures)]
+TheViewers = Annotated["Viewers", Depends(the_viewers)]
+TheFaultWatch = Annotated["FaultWatch", Depends(the_fault_watch)]
 TheTickText = Annotated[TickText, Depends(the_tick_text)]

@@ -25,8 +25,9 @@ async def again(
     """Start what was asked for then; `differences` says what of the rig file has changed since."""
     record = await asyncio.to_thread(record_of, archive, run_id)
     restore_path(record.settings, rig.custom_trajectories)
+    await rig.custom_trajectories.keep()
     run = await rig.start_run(request_again(record))
-    changed = differences(recorded_rig(record.settings), recorded_rig({"rig": rig.settings.to_public()}))
+    changed = differences(recorded_rig(record.settings), recorded_rig({"rig": rig.settings.to_recorded()}))
     return {"run": run_json(run), "differences": [difference_json(each) for each in changed]}
 
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Awaitable, Callable
+from functools import partial
 from typing import Any
 
 from fastapi import APIRouter, Response, WebSocket
@@ -15,7 +16,9 @@ from server.api.access import ThePictures, TheRig
 from server.api.body import StrictRoute
 from server.api.problems import Problem, Rejected
 from server.api.sockets import Line, listen, serve
-from server.pictures import Pictures, View
+from server.api.ticks import number, text
+from server.calibration.optics import is_calibrated
+from server.pictures import Picture, Pictures, View
 from server.streams import Cadence, Publisher, StreamEnded, until_first_ends
 
 router = APIRouter(tags=["camera"], route_class=StrictRoute)
@@ -39,6 +42,7 @@ async def camera(rig: TheRig) -> dict[str, Any]:
     return {
         "size": list(model.size),
         "rate_Hz": rig.settings.camera.rate_Hz,
+        "calibrated": is_calibrated(rig.settings.camera),
         "model": {
             "fx": model.fx,
             "fy": model.fy,
@@ -57,10 +61,10 @@ async def snapshot(pictures: ThePictures, view: View = "raw") -> Response:
     """The newest picture."""
     try:
         async with asyncio.timeout(FIRST_PICTURE):
-            _, jpeg = await pictures.newer_than(None, view)
+            picture = await pictures.newer_than(None, view)
     except (TimeoutError, StreamEnded):
         raise Rejected(Problem(503, "No picture", "The camera has not delivered a frame.")) from None
-    return Response(jpeg, media_type="image/jpeg")
+    return Response(picture.jpeg, media_type="image/jpeg")
 
 
 @router.get("/camera/stream.mjpg", response_class=StreamingResponse)
@@ -96,26 +100,48 @@ async def parts(pictures: Pictures, view: View) -> AsyncIterator[bytes]:
     while True:
         await cadence.wait()
         try:
-            index, jpeg = await pictures.newer_than(index, view)
+            picture = await pictures.newer_than(index, view)
         except StreamEnded:
             return
+        index, jpeg = picture.index, picture.jpeg
         yield f"--{BOUNDARY}\r\nContent-Type: image/jpeg\r\nContent-Length: {len(jpeg)}\r\n\r\n".encode()
         yield jpeg + b"\r\n"
 
 
 @sockets.websocket("/camera")
-async def pictures_to_page(socket: WebSocket, pictures: ThePictures, view: View = "raw") -> None:
-    """One JPEG, then the newest one after each message of the client, so that none waits on the way."""
+async def pictures_to_page(
+    socket: WebSocket, pictures: ThePictures, view: View = "raw", with_time: bool = False
+) -> None:
+    """One JPEG, then the newest one after each message of the client, so that none waits on the way.
+
+    with_time: before each picture a text message says which frame it is and when it was captured.
+    """
     await socket.accept()
     ready = asyncio.Event()
     ready.set()
-    await serve(socket, listen(socket, ready.set), send_pictures(Line(socket), pictures, view, ready))
+    line = Line(socket)
+    show = partial(send_with_time, line) if with_time else partial(send_picture, line)
+    await serve(socket, listen(socket, ready.set), send_pictures(show, pictures, view, ready))
 
 
-async def send_pictures(line: Line, pictures: Pictures, view: View, ready: asyncio.Event) -> None:
+async def send_pictures(
+    show: Callable[[Picture], Awaitable[None]], pictures: Pictures, view: View, ready: asyncio.Event
+) -> None:
     index: int | None = None
     while True:
         await ready.wait()
         ready.clear()
-        index, jpeg = await pictures.newer_than(index, view)
-        await line.send_bytes(jpeg)
+        picture = await pictures.newer_than(index, view)
+        index = picture.index
+        await show(picture)
+
+
+async def send_picture(line: Line, picture: Picture) -> None:
+    await line.send_bytes(picture.jpeg)
+
+
+async def send_with_time(line: Line, picture: Picture) -> None:
+    """`captured_s` is on the clock of the ticks, and rounded as theirs, so that the two can be matched."""
+    about = {"type": "picture", "frame": picture.index, "captured_s": number(picture.captured_at)}
+    await line.send_text(text(about))
+    await line.send_bytes(picture.jpeg)

@@ -85,7 +85,9 @@ def listing(registry: Registry[Any]) -> list[dict[str, Any]]:
 
 
 def choice_json(registry: Registry[Any], choice: Choice) -> dict[str, Any]:
-    """With all parameters, also those that were left at their defaults."""
+    """With all parameters, also those that were left at their defaults, as far as the choice is still there."""
+    if choice.name not in registry:
+        return {"name": choice.name, "parameters": dict(choice.parameters)}
     complete = registry[choice.name].Parameters.model_validate(dict(choice.parameters))
     return {"name": choice.name, "parameters": complete.model_dump(mode="json")}
 

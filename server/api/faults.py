@@ -3,17 +3,23 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated, Any
 
 from fastapi import APIRouter, Depends
 from pydantic import Field, JsonValue, ValidationError
 
 from control.simulation.faults.injection import ALWAYS, KINDS, Faults, Injection, Pattern
 from control.simulation.faults.kind import FaultKind
+from control.simulation.faults.promises import PROMISES, Promise
 from server.api import problems, ticks
-from server.api.access import TheRig
+from server.api.access import TheFaultWatch, TheRig
 from server.api.body import StrictRoute
 from server.api.schemas import Edge, Name
+from server.fault_watch import FaultWatch, Reaction, cause_of, decay_of
+
+if TYPE_CHECKING:
+    from server.rig import Rig
 
 router = APIRouter(prefix="/simulation/faults", tags=["simulation"], route_class=StrictRoute)
 
@@ -50,39 +56,82 @@ async def the_faults(rig: TheRig) -> Faults:
 TheFaults = Annotated[Faults, Depends(the_faults)]
 
 
+@dataclass(frozen=True, slots=True)
+class Exhibit:
+    """All that is told of the faults of one rig."""
+
+    rig: Rig
+    faults: Faults
+    watch: FaultWatch
+
+    def catalogue(self) -> dict[str, Any]:
+        return {"faults": [self.entry(name) for name in KINDS]}
+
+    def entry(self, name: str) -> dict[str, Any]:
+        reaction = self.watch.of(name)
+        return {
+            **entry(KINDS[name], self.faults.get(name)),
+            "promise": promised(PROMISES[name], decay_of(self.rig.settings)),
+            "reaction": None if reaction is None else reacted(reaction, self.rig),
+        }
+
+
+async def the_exhibit(rig: TheRig, faults: TheFaults, watch: TheFaultWatch) -> Exhibit:
+    return Exhibit(rig, faults, watch)
+
+
+TheExhibit = Annotated[Exhibit, Depends(the_exhibit)]
+
+
 @router.get("")
-async def list_faults(faults: TheFaults) -> dict[str, Any]:
-    """All kinds, each with the JSON schema of its parameters and what is injected of it now, or null."""
-    return catalogue(faults)
+async def list_faults(exhibit: TheExhibit) -> dict[str, Any]:
+    """All kinds, each with the JSON schema of its parameters, what is injected of it now, what the rig promises for it
+    and what it did about the last one of its kind; null for what there is not."""
+    return exhibit.catalogue()
 
 
 @router.post("", status_code=201)
-async def inject(body: FaultBody, rig: TheRig, faults: TheFaults) -> dict[str, Any]:
+async def inject(body: FaultBody, exhibit: TheExhibit) -> dict[str, Any]:
     """Put a fault in, in place of one of the same name."""
     check(body)
+    await exhibit.rig.between_ticks(lambda: put_in(body, exhibit))
+    return exhibit.entry(body.name)
+
+
+def put_in(body: FaultBody, exhibit: Exhibit) -> None:
+    """On the rig's thread: what the rig does is looked at from just before the fault."""
     duration = math.inf if body.duration_s is None else body.duration_s
     comes = body.intermittent
     pattern = ALWAYS if comes is None else Pattern(comes.on_s, comes.off_s)
-    injection = await rig.between_ticks(lambda: faults.inject(body.name, body.parameters, duration, pattern))
-    return entry(injection.kind, faults.get(body.name))
+    if body.name in KINDS:
+        exhibit.watch.begin(body.name, is_usual=is_usual(body))
+    exhibit.faults.inject(body.name, body.parameters, duration, pattern)
+
+
+def is_usual(body: FaultBody) -> bool:
+    """Whether the rig's promise is for this: for good, with the parameters that the promise names."""
+    kind = KINDS[body.name]
+    usual = kind.parameters.model_validate(dict(PROMISES[body.name].parameters))
+    lasts = body.duration_s is None and body.intermittent is None
+    return lasts and kind.parameters.model_validate(body.parameters) == usual
 
 
 @router.delete("/{name}")
-async def clear(name: str, faults: TheFaults) -> dict[str, Any]:
+async def clear(name: str, exhibit: TheExhibit) -> dict[str, Any]:
     """Take a fault away; it is gone at the next tick. Nothing to do when it is not in."""
     if name not in KINDS:
         raise problems.not_found(
             f"There is no fault called {name[:80]!r}; GET this list to see what there is."
         )
-    faults.clear(name)
-    return entry(KINDS[name], faults.get(name))
+    exhibit.faults.clear(name)
+    return exhibit.entry(name)
 
 
 @router.delete("")
-async def clear_all(faults: TheFaults) -> dict[str, Any]:
+async def clear_all(exhibit: TheExhibit) -> dict[str, Any]:
     """Take all faults away."""
-    faults.clear_all()
-    return catalogue(faults)
+    exhibit.faults.clear_all()
+    return exhibit.catalogue()
 
 
 def check(body: FaultBody) -> None:
@@ -102,10 +151,6 @@ def check(body: FaultBody) -> None:
         raise problems.Rejected(
             problems.invalid(problems.offences(error.errors(), ("parameters",)))
         ) from error
-
-
-def catalogue(faults: Faults) -> dict[str, Any]:
-    return {"faults": [entry(kind, faults.get(kind.name)) for kind in KINDS.values()]}
 
 
 def entry(kind: FaultKind, injection: Injection | None) -> dict[str, Any]:
@@ -128,4 +173,31 @@ def state(injection: Injection) -> dict[str, Any]:
         "since_s": ticks.number(injection.since),
         "until_s": ticks.number(injection.until) if math.isfinite(injection.until) else None,
         "is_on": injection.is_on,
+    }
+
+
+def promised(promise: Promise, decay: float) -> dict[str, Any]:
+    """Of a rig that walks. decay: of the coils' current, s.  noticed_ms, gone_ms: null where the robot walks on."""
+    zero = promise.zero
+    return {
+        "sees": promise.sees,
+        "states": [state.value for state in promise.states],
+        "noticed_ms": promise.noticed,
+        "gone_ms": None if zero is None else ticks.number(zero + decay * 1e3, 0),
+        "go_on": promise.go_on,
+        "parameters": dict(promise.parameters),
+    }
+
+
+def reacted(reaction: Reaction, rig: Rig) -> dict[str, Any]:
+    """noticed_ms: until the line of the log came that says what is wrong.  gone_ms: until no current flowed."""
+    cause = None if reaction.became is None else cause_of(reaction, (event.line for event in rig.events))
+    return {
+        "since_s": ticks.number(reaction.since),
+        "was": reaction.was.value,
+        "became": None if reaction.became is None else reaction.became.value,
+        "reason": reaction.reason if cause is None else cause.message,
+        "noticed_ms": ticks.scaled(reaction.noticed(cause), 1e3, 0),
+        "gone_ms": ticks.scaled(reaction.zero, 1e3, 0),
+        "verdict": reaction.judge(cause, rig.snapshot.time).value,
     }

@@ -5,14 +5,15 @@ from __future__ import annotations
 import math
 from typing import Annotated, Any, Literal
 
-from fastapi import APIRouter
-from pydantic import Field
+from fastapi import APIRouter, Request
+from pydantic import Field, model_validator
 
 from control.controllers.manual import Jog
 from server.api import ticks
 from server.api.access import TheRig
 from server.api.body import StrictRoute
 from server.api.schemas import Edge
+from server.jog_order import JogOrder
 
 router = APIRouter(tags=["manual"], route_class=StrictRoute)
 
@@ -28,14 +29,36 @@ class JogBody(Edge):
         default=None, title="Tilt", description="Of the field; left out, it stays as it is.",
         json_schema_extra={"unit": "°"},
     )  # fmt: skip
+    hand: Annotated[str, Field(min_length=1, max_length=40)] | None = Field(
+        default=None,
+        title="Hand",
+        description="Who jogs; with a number, so that a late jog starts nothing again.",
+    )
+    number: Annotated[int, Field(ge=0, le=2**53)] | None = Field(
+        default=None,
+        title="Number",
+        description="Of the jogs of this hand; each has a higher one than the last.",
+    )
+
+    @model_validator(mode="after")
+    def _number_of_a_hand(self) -> JogBody:
+        if (self.hand is None) != (self.number is None):
+            raise ValueError("hand and number come together: send both, or neither")
+        return self
 
     def to_si(self) -> Jog:
         tilt = None if self.tilt_deg is None else math.radians(self.tilt_deg)
         return Jog(self.pivot, math.radians(self.rate_deg_s), tilt)
 
 
+def order_of(request: Request) -> JogOrder:
+    return request.app.state.jog_order
+
+
 @router.post("/manual")
-async def manual(body: JogBody, rig: TheRig) -> dict[str, Any]:
-    """Swing about a pivot for at most 300 ms; the rig must be armed and no run going on."""
+async def manual(body: JogBody, request: Request, rig: TheRig) -> dict[str, Any]:
+    """Swing about a pivot for at most 300 ms; the rig must be armed and no run going on. A rate of 0 stops at once."""
+    if body.hand is not None and body.number is not None:
+        order_of(request).take(body.hand, body.number)
     await rig.jog(body.to_si())
     return ticks.state(rig.snapshot)

@@ -17,6 +17,7 @@ from starlette.responses import JSONResponse, Response
 from control.registry import UnknownName
 from control.safety import Refused
 from control.trajectories import OutsideWorkspace
+from control.wrong_values import SECRET_FIELDS
 from server.catalogue.errors import BadCursor, CatalogueError, NoSuchRun, NotNow
 
 SHOWN_LENGTH = 80
@@ -114,6 +115,8 @@ def message(error: Mapping[str, Any]) -> str:
 def received(error: Mapping[str, Any]) -> str:
     """What came, for the values that a person can compare with what is allowed."""
     value = error.get("input")
+    if not SECRET_FIELDS.isdisjoint(error.get("loc", ())):
+        return ""
     if isinstance(value, bool) or value is None:
         return f", not {str(value).lower() if value is not None else 'null'}"
     if isinstance(value, int | float):

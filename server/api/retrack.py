@@ -52,7 +52,7 @@ class RetrackBody(Edge):
         return Changes(
             vision=self.vision,
             estimator=self.estimator,
-            rig=rig.settings.to_public() if self.rig == "now" else None,
+            rig=rig.settings.to_recorded() if self.rig == "now" else None,
             controller=None if asked is None else Choice(asked.name, asked.parameters),
             estimate=self.estimate,
         )

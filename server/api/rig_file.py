@@ -6,14 +6,21 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Body
+from fastapi import APIRouter, Body, Response
+from pydantic import Field
 
 from server.api.access import TheChanges, TheRig
 from server.api.body import StrictRoute
 from server.api.problems import Problem, Rejected, invalid, offence
+from server.api.schemas import Edge
 from server.rig import Rig
 from server.rig_changes import Change, DoNotGoTogether, NeedsDisarmed, RigChanges
 from server.rig_file import RigFileError
+from server.rig_import import UnusableText
+from server.rig_schema import rig_schema
+
+LONGEST_FILE = 200_000
+"""Characters; the longest honest one, with thirty colour profiles, has some 10 000."""
 
 router = APIRouter(prefix="/rig", tags=["rig file"], route_class=StrictRoute)
 
@@ -37,6 +44,37 @@ async def alter(body: Changes, rig: TheRig, changes: TheChanges) -> dict[str, An
     """Change values, and save them: all of them or none. Most need a disarmed rig, which is then rebuilt."""
     with told():
         return answer(rig, changes, await served(changes).patch(body))
+
+
+@router.get("/schema")
+async def schema() -> dict[str, Any]:
+    """The rig file as a JSON schema: titles, units, ranges, defaults, and which values need a disarmed rig."""
+    return rig_schema()
+
+
+@router.get("/file.toml", response_class=Response, responses={200: {"content": {"application/toml": {}}}})
+async def file(changes: TheChanges) -> Response:
+    """The rig file with its comments, to keep or to take to another computer; logins and keys are hidden."""
+    text = served(changes).exported()
+    headers = {"Content-Disposition": 'attachment; filename="rig.toml"'}
+    return Response(text, media_type="application/toml; charset=utf-8", headers=headers)
+
+
+class ImportBody(Edge):
+    """Another rig file. What it hides with *** stays as it is here."""
+
+    toml: Annotated[str, Field(max_length=LONGEST_FILE)]
+    apply: bool = False
+    """Else it is looked at, and nothing changes."""
+
+
+@router.post("/import")
+async def take_over(body: ImportBody, rig: TheRig, changes: TheChanges) -> dict[str, Any]:
+    """Look at another rig file as a whole (`differences`), or apply it: whole, and to a disarmed rig."""
+    with told(), unusable():
+        if body.apply:
+            return answer(rig, changes, await served(changes).take(body.toml))
+        return {"differences": await served(changes).look_at(body.toml)}
 
 
 @router.post("/reload")
@@ -80,6 +118,15 @@ def own_file(changes: RigChanges | None) -> RigChanges:
             )
         )
     return file
+
+
+@contextmanager
+def unusable() -> Iterator[None]:
+    """A file that came with the request is the request's fault."""
+    try:
+        yield
+    except UnusableText as error:
+        raise Rejected(Problem(422, "Not acceptable", str(error))) from error
 
 
 @contextmanager

@@ -88,3 +88,15 @@ class CustomPathBody(Edge):
     closed: bool = True
     kind: Smoothing = "polyline"
     speed_mm_s: Annotated[float, Field(ge=SLOWEST_MM_S, le=50.0)] = 3.0
+
+
+class RenameBody(Edge):
+    """Another name for a saved path."""
+
+    name: PathName
+
+
+class PointsTextBody(Edge):
+    """The text of a file of points."""
+
+    text: Annotated[str, Field(max_length=900_000)]

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Annotated, Any
 
-from fastapi import APIRouter
+from fastapi import APIRouter, Query
 
 from control.gait_settings import GaitSettings
 from server.api.access import TheRig
@@ -21,9 +21,11 @@ async def selection(rig: TheRig) -> dict[str, Any]:
 
 
 @router.put("/selection")
-async def replace(body: SelectionBody, rig: TheRig) -> dict[str, Any]:
-    """Choose; parameters that are left out get their defaults."""
-    await rig.select(select(body))
+async def replace(
+    body: SelectionBody, rig: TheRig, by: Annotated[str | None, Query(max_length=40)] = None
+) -> dict[str, Any]:
+    """Choose; parameters that are left out get their defaults. `by` is repeated to everybody who is told of it."""
+    await rig.select(select(body), by)
     return selection_json(rig.selection)
 
 

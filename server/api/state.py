@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from importlib.metadata import version
+from itertools import islice
 from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Query
@@ -10,6 +11,7 @@ from fastapi import APIRouter, Query
 from server.api import ticks
 from server.api.access import TheRig
 from server.api.body import StrictRoute
+from server.event_log import event_json
 
 router = APIRouter(tags=["state"], route_class=StrictRoute)
 
@@ -36,15 +38,19 @@ async def events(
     cursor: Annotated[int, Query(ge=0)] = 0,
     limit: Annotated[int, Query(ge=1, le=500)] = 100,
 ) -> dict[str, Any]:
-    """What happened in this session, newest first; `next` is the cursor of the following page, or null."""
-    wanted = [event for event in reversed(rig.events) if severity in (None, event.severity)]
-    listed = [
-        {
-            "time_s": ticks.number(event.time),
-            "severity": str(event.severity),
-            "code": event.code,
-            "message": event.message,
-        }
-        for event in wanted[cursor : cursor + limit]
-    ]
-    return {"events": listed, "next": cursor + limit if cursor + limit < len(wanted) else None}
+    """What happened in this session, newest first; `next` is the cursor of the following page, or null.
+
+    A `number` counts up through the session; a cursor is the number of the last line of the page before, so that
+    what happens meanwhile shifts no page. `run_id` is the run that was going on then.
+    """
+    wanted = islice(
+        (
+            event
+            for event in reversed(rig.events)
+            if severity in (None, event.severity) and (not cursor or event.number < cursor)
+        ),
+        limit + 1,
+    )
+    listed = [event_json(event) for event in wanted]
+    page = listed[:limit]
+    return {"events": page, "next": page[-1]["number"] if len(listed) > limit else None}

@@ -65,6 +65,11 @@ def model_in_use(camera: CameraSection) -> CameraModel:
     )
 
 
+def is_calibrated(camera: CameraSection) -> bool:
+    """Whether the plate's place in the picture was measured; else a camera that looks straight down is assumed."""
+    return camera.plane is not None and not _plane_misfit(camera, camera.plane)
+
+
 def board_of(camera: CameraSection) -> Board:
     """The board that is printed for this rig."""
     board = camera.board

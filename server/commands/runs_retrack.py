@@ -57,7 +57,7 @@ def retrack(
     from server.retrack.changes import Changes
 
     asked = None if controller is None else Choice(controller, _values(settings, "--set"))
-    other = None if rig is None else read_rig_file(rig).to_public()
+    other = None if rig is None else read_rig_file(rig).to_recorded()
     changes = Changes(_values(vision, "--vision"), _values(estimator, "--estimator"), other, asked, estimate)
     [record] = records_of([id], data)
     result = _looked_at(recording_of(record, data), changes, out)

@@ -52,7 +52,7 @@ def conditions_of(machine: Machine) -> Conditions:
 
 def settings_json(run: Run, conditions: Conditions) -> dict[str, Any]:
     """What settings.json says; lab units in the names. A network camera's password is no part of it."""
-    rig = conditions.settings.to_public()
+    rig = conditions.settings.to_recorded()
     simulation = conditions.settings.simulation
     return {
         "format": FORMAT,

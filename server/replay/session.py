@@ -51,6 +51,8 @@ class ReplaySession:
         self._shown: Publisher[Instant] = Publisher()
         self._scene: SceneFeed[Instant] | None = None
         self._one_at_a_time = asyncio.Lock()
+        self._newest: Picture | None = None
+        """Of the first recording: the picture that was shown last."""
 
     async def open(self, paths: Sequence[Path]) -> None:
         """Raises `Unreadable`."""
@@ -68,6 +70,8 @@ class ReplaySession:
     async def shot(self, at: float, *, pictures: bool) -> Shot:
         """What there was `at` s after the runs' start; the scene shows it too. Raises `Unreadable`."""
         shot = await self._on_thread(self._shot, at, pictures)
+        if shot.films and shot.films[0] is not None:
+            self._newest = shot.films[0].picture
         self._shown.publish(shot.instant)
         return shot
 
@@ -87,7 +91,7 @@ class ReplaySession:
             return self._scene
 
     def _source(self) -> ReplaySource:
-        return stage([player.recording for player in self._players], self._fallback)
+        return stage([player.recording for player in self._players], self._fallback, lambda: self._newest)
 
     async def close(self) -> None:
         self._shown.close()

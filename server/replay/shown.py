@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,9 +13,12 @@ from numpy.typing import NDArray
 from control.model import Pose
 from control.snapshot import ZERO, Vector
 from server.recording.reading.paths import Path, path_at
+from server.recording.reading.recording import Picture
 from server.scene.geometry import SceneGeometry
+from server.scene.plate_pictures import Photograph
 from server.scene.robot import ShownRobot
 from server.scene.scene import View
+from server.scene.shapes import FULL_FIELD
 
 MM = 1e-3
 TRAIL = 60.0
@@ -48,16 +51,32 @@ class Course:
 
 
 class ReplaySource:
-    """How an instant looks. geometry: of the first run's rig."""
+    """How an instant looks.
 
-    def __init__(self, geometry: SceneGeometry, courses: Sequence[Course]) -> None:
+    geometry: of the first run's rig.  newest: its picture that was shown last, None for none.
+    full_field: the end of the field's scale, T.
+    """
+
+    def __init__(
+        self,
+        geometry: SceneGeometry,
+        courses: Sequence[Course],
+        newest: Callable[[], Picture | None] = lambda: None,
+        full_field: float = FULL_FIELD,
+    ) -> None:
         self.geometry = geometry
         self._courses = courses
+        self._newest = newest
+        self._full_field = full_field
 
     def view(self, instant: Instant) -> View:
         pairs = zip(instant.ticks, self._courses, strict=True)
         robots = [robot_of(tick, course, instant.at) for tick, course in pairs]
-        return View(self.geometry, currents_of(instant.ticks[0]), robots)
+        return View(self.geometry, currents_of(instant.ticks[0]), robots, self._full_field)
+
+    def photograph(self) -> Photograph | None:
+        picture = self._newest()
+        return None if picture is None else Photograph(picture.jpeg, picture.captured_s)
 
 
 def robot_of(tick: Tick | None, course: Course, at: float) -> ShownRobot:
@@ -66,7 +85,9 @@ def robot_of(tick: Tick | None, course: Course, at: float) -> ShownRobot:
     pivot = -1 if tick["command"]["pivot"] == -1 else 1
     tilt = math.radians(tick["body_tilt_deg"] or 0.0)
     path = path_at(course.paths, at)
-    return ShownRobot(pose_of(tick["pose"]), pivot, tilt, path, course.until(at))
+    return ShownRobot(
+        pose_of(tick["pose"]), pivot, tilt, path, course.until(at), target_of(tick["reference"])
+    )
 
 
 def pose_of(pose: Mapping[str, float | None] | None) -> Pose | None:
@@ -76,6 +97,13 @@ def pose_of(pose: Mapping[str, float | None] | None) -> Pose | None:
     if x is None or y is None or heading is None:
         return None
     return Pose(x * MM, y * MM, math.radians(heading))
+
+
+def target_of(reference: Mapping[str, float | None] | None) -> tuple[float, float] | None:
+    """Where the robot should have been, m."""
+    if reference is None or reference["x_mm"] is None or reference["y_mm"] is None:
+        return None
+    return reference["x_mm"] * MM, reference["y_mm"] * MM
 
 
 def currents_of(tick: Tick | None) -> Vector:

@@ -3,32 +3,39 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from server.recording.reading.paths import paths_of
-from server.recording.reading.recording import Recording
+from server.recording.reading.recording import Picture, Recording
 from server.replay.overview import series_of
 from server.replay.shown import MM, Course, ReplaySource
-from server.replay.then import rig_of
+from server.replay.then import camera_model_of, gait_field, rig_of
 from server.scene.geometry import SceneGeometry, geometry_of
+from server.scene.shapes import FULL_FIELD, full_field
 from server.settings_in_si import coil_set
 
 log = logging.getLogger(__name__)
 
 
-def stage(recordings: Sequence[Recording], fallback: SceneGeometry) -> ReplaySource:
-    """fallback: the geometry where the first recording does not tell its rig."""
-    geometry = recorded_geometry(recordings[0].settings) or fallback
-    return ReplaySource(geometry, [course_of(recording) for recording in recordings])
+def stage(
+    recordings: Sequence[Recording], fallback: SceneGeometry, newest: Callable[[], Picture | None]
+) -> ReplaySource:
+    """fallback: the geometry where the first recording does not tell its rig.  newest: the picture shown last."""
+    settings = recordings[0].settings
+    geometry = recorded_geometry(settings) or replace(fallback, camera=camera_model_of(settings))
+    field = gait_field(settings)
+    scale = FULL_FIELD if field is None else full_field(field)
+    return ReplaySource(geometry, [course_of(recording) for recording in recordings], newest, scale)
 
 
 def recorded_geometry(settings: Mapping[str, Any]) -> SceneGeometry | None:
     rig = rig_of(settings)
-    return None if rig is None else geometry_of(rig, coil_set(rig))
+    return None if rig is None else geometry_of(rig, coil_set(rig), camera_model_of(settings))
 
 
 def course_of(recording: Recording) -> Course:

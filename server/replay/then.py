@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from pydantic import ValidationError
@@ -12,6 +12,7 @@ from control.gait import Gait, TimeLaw
 from control.gait_settings import GaitSettings
 from control.trajectories.waypoints import WaypointsParameters
 from server.settings import RigFile
+from vision.camera_model import CameraModel, Rotation
 
 Settings = Mapping[str, Any]
 """settings.json of a recording; see `server.recording.conditions`."""
@@ -87,6 +88,35 @@ def camera_of(settings: Settings) -> dict[str, Any] | None:
         }
     except (KeyError, TypeError):
         return None
+
+
+def camera_model_of(settings: Settings) -> CameraModel | None:
+    """The camera that the run was seen by; None where it is lost."""
+    try:
+        camera = settings["camera"]
+        fx, fy, cx, cy = (float(camera[f"{name}_px"]) for name in ("fx", "fy", "cx", "cy"))
+        width, height = map(int, camera["size_px"])
+        k1, k2, p1, p2, k3 = map(float, camera["distortion"])
+        rotation = rotation_of(camera["rotation"])
+        x, y, z = (float(value) * 1e-3 for value in camera["translation_mm"])
+        return CameraModel((width, height), fx, fy, cx, cy, (k1, k2, p1, p2, k3), rotation, (x, y, z))
+    except (KeyError, TypeError, ValueError):
+        return None
+
+
+def rotation_of(rows: Sequence[Sequence[float]]) -> Rotation:
+    """Raises ValueError for what is not 3 x 3."""
+    (a, b, c), (d, e, f), (g, h, i) = (map(float, row) for row in rows)
+    return (a, b, c), (d, e, f), (g, h, i)
+
+
+def gait_field(settings: Settings) -> float | None:
+    """The field that the run's gait asked for, T; None where it is lost."""
+    try:
+        field = settings["run"]["gait_SI"]["field"]
+    except (KeyError, TypeError):
+        return None
+    return float(field) if is_number(field) and field > 0.0 else None
 
 
 def workspace_half_mm(settings: Settings) -> float | None:

@@ -1,7 +1,8 @@
 """The door to Viser: its page and its socket under our own address, one way for everything but the view.
 
 Viser has no authentication, accepts any origin and lets each client ask for more than a view. So the browser
-talks to us, and of what it says only a well-formed camera pose goes on.
+talks to us, and of what it says only a well-formed camera pose goes on. What one viewer alone is to see is put
+between Viser's messages here.
 """
 
 from __future__ import annotations
@@ -9,7 +10,8 @@ from __future__ import annotations
 import asyncio
 import logging
 import math
-from collections.abc import Awaitable, Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Literal
 
 import msgspec
@@ -18,6 +20,8 @@ from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed
 from websockets.typing import Subprotocol
 
+from server.scene.viewers.known import Viewer
+from server.scene.viewers.stream import OwnStream, Stage
 from server.streams import Mailbox, until_first_ends
 
 log = logging.getLogger(__name__)
@@ -50,33 +54,52 @@ class CameraPose(msgspec.Struct, forbid_unknown_fields=True):
         scalars = (self.fov, self.near, self.far, self.image_height, self.image_width)
         return all(map(math.isfinite, (*vectors, *scalars)))
 
+    @property
+    def aspect(self) -> float:
+        """Width over height of the viewer's picture."""
+        return max(0.2, min(5.0, self.image_width / self.image_height)) if self.image_height > 0.0 else 1.0
+
 
 _decoder = msgspec.msgpack.Decoder(CameraPose)
 _encoder = msgspec.msgpack.Encoder()
 
 
-def admitted(message: bytes) -> bytes | None:
-    """The message as it goes on to Viser, or None for everything that is not a camera pose."""
+def admitted(message: bytes) -> CameraPose | None:
+    """The camera pose that goes on to Viser, or None for every other message."""
     try:
         pose = _decoder.decode(message)
     except (msgspec.DecodeError, msgspec.ValidationError):
         return None
-    return _encoder.encode(pose) if pose.is_finite() else None
+    return pose if pose.is_finite() else None
+
+
+class Downlink:
+    """Whole messages from several senders to one browser, one after the other."""
+
+    def __init__(self, socket: WebSocket) -> None:
+        self._socket = socket
+        self._turn = asyncio.Lock()
+
+    async def send(self, data: bytes) -> None:
+        async with self._turn, asyncio.timeout(SEND_TIMEOUT):
+            await self._socket.send_bytes(data)
 
 
 class SceneBridge:
     """Counts who is looking, and carries bytes between each browser and Viser.
 
     port: where Viser listens on loopback.  on_change: called on the event loop when a viewer comes or goes.
+    stage: what there is to see.
     """
 
-    def __init__(self, port: Callable[[], int], on_change: Callable[[], None]) -> None:
+    def __init__(self, port: Callable[[], int], on_change: Callable[[], None], stage: Stage) -> None:
         self._port = port
         self._on_change = on_change
+        self._stage = stage
         self.viewers = 0
         self.refused = 0
 
-    async def serve(self, socket: WebSocket) -> None:
+    async def serve(self, socket: WebSocket, viewer: Viewer) -> None:
         protocol = next((name for name in socket.scope["subprotocols"] if name.startswith("viser-v")), None)
         if protocol is None:
             await socket.close(1002, "this is the 3D scene's own socket")
@@ -92,23 +115,34 @@ class SceneBridge:
             ping_interval=None,
         ) as viser_socket:
             await socket.accept(viser_socket.subprotocol)
-            self._count(1)
-            try:
-                await self._carry(socket, viser_socket)
-            finally:
-                self._count(-1)
+            with self._counted(), viewer.streaming():
+                await self._carry(socket, viser_socket, viewer)
+
+    @contextmanager
+    def _counted(self) -> Iterator[None]:
+        self._count(1)
+        try:
+            yield
+        finally:
+            self._count(-1)
 
     def _count(self, change: int) -> None:
         self.viewers += change
         self._on_change()
 
-    async def _carry(self, socket: WebSocket, viser_socket: ClientConnection) -> None:
-        poses = Mailbox[bytes](depth=1)
+    async def _carry(self, socket: WebSocket, viser_socket: ClientConnection, viewer: Viewer) -> None:
+        poses = Mailbox[CameraPose](depth=1)
+        down = Downlink(socket)
+        own = OwnStream(viewer, self._stage, down.send)
         try:
             await until_first_ends(
-                downwards(viser_socket, socket),
-                self._listen(socket, poses),
+                downwards(viser_socket, down),
+                self._listen(socket, poses, own),
                 upwards(poses, viser_socket),
+                own.wishes(),
+                own.eye(),
+                own.camera(),
+                own.reports(),
             )
         except (WebSocketDisconnect, ConnectionClosed):
             return
@@ -117,39 +151,35 @@ class SceneBridge:
             return
         await close_quietly(socket)
 
-    async def _listen(self, socket: WebSocket, poses: Mailbox[bytes]) -> None:
+    async def _listen(self, socket: WebSocket, poses: Mailbox[CameraPose], own: OwnStream) -> None:
         """The newest camera pose wins; a flood of them costs Viser no more than 30 a second."""
         while True:
             event = await socket.receive()
             if event["type"] == "websocket.disconnect":
                 return
-            message = admitted(event.get("bytes") or b"")
-            if message is None:
+            pose = admitted(event.get("bytes") or b"")
+            if pose is None:
                 self.refused += 1
             else:
-                poses.put(message)
+                poses.put(pose)
+                own.hear(pose.position, pose.look_at, pose.up_direction, pose.aspect)
 
 
-async def downwards(viser_socket: ClientConnection, socket: WebSocket) -> None:
+async def downwards(viser_socket: ClientConnection, down: Downlink) -> None:
     async for message in viser_socket:
-        data = message if isinstance(message, bytes) else message.encode()
-        await within(SEND_TIMEOUT, socket.send_bytes(data))
+        await down.send(message if isinstance(message, bytes) else message.encode())
 
 
-async def upwards(poses: Mailbox[bytes], viser_socket: ClientConnection) -> None:
+async def upwards(poses: Mailbox[CameraPose], viser_socket: ClientConnection) -> None:
     while True:
-        await viser_socket.send(await poses.get())
+        await viser_socket.send(_encoder.encode(await poses.get()))
         await asyncio.sleep(CAMERA_PERIOD)
-
-
-async def within(limit: float, sending: Awaitable[None]) -> None:
-    async with asyncio.timeout(limit):
-        await sending
 
 
 async def close_quietly(socket: WebSocket) -> None:
     """Viser has ended: tell the browser, unless it has gone too."""
     try:
-        await within(1.0, socket.close(1012))
+        async with asyncio.timeout(1.0):
+            await socket.close(1012)
     except (WebSocketDisconnect, RuntimeError, TimeoutError):
         log.debug("the scene viewer had gone already")

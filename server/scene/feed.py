@@ -9,9 +9,12 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import Any, Generic, Protocol, TypeVar
 
 from server.scene.bridge import SceneBridge
-from server.scene.geometry import SceneGeometry
+from server.scene.geometry import CM, SceneGeometry
+from server.scene.plate_pictures import Photograph, PlatePictures
 from server.scene.robot import LOOKS, Looks
 from server.scene.scene import Scene, View
+from server.scene.shapes import FULL_FIELD
+from server.scene.views import Place
 from server.streams import Cadence, Mailbox, Publisher, StreamEnded
 
 T = TypeVar("T")
@@ -31,6 +34,10 @@ class Source(Protocol[T_contra]):
 
     def view(self, value: T_contra, /) -> View: ...
 
+    def photograph(self) -> Photograph | None:
+        """The camera's newest picture."""
+        ...
+
 
 class SceneFeed(Generic[T]):
     """A scene's life: its Viser starts, is fed while it has viewers, and ends."""
@@ -43,8 +50,25 @@ class SceneFeed(Generic[T]):
         self._thread = ThreadPoolExecutor(1, thread_name_prefix="scene")
         self._watched = asyncio.Event()
         self._task: asyncio.Task[None] | None = None
+        self._shown: View | None = None
         self.scene: Scene | None = None
-        self.bridge = SceneBridge(self._viser_port, self._viewers_changed)
+        self.pictures = PlatePictures(self._thread, lambda: self.geometry, source.photograph)
+        self.bridge = SceneBridge(self._viser_port, self._viewers_changed, self)
+
+    @property
+    def geometry(self) -> SceneGeometry:
+        return self._source.geometry
+
+    @property
+    def robot(self) -> Place | None:
+        """Where the first robot is, in the scene's cm; None while that is not known."""
+        pose = self._shown.robots[0].pose if self._shown else None
+        return None if pose is None else (pose.x * CM, pose.y * CM, 0.0)
+
+    @property
+    def full_field(self) -> float:
+        """The end of the field's colours, T."""
+        return self._shown.full_field if self._shown else FULL_FIELD
 
     async def start(self) -> None:
         self.scene = scene = await self._on_thread(Scene, self._source.geometry, self._looks)
@@ -84,7 +108,8 @@ class SceneFeed(Generic[T]):
                 await cadence.wait()
 
     async def _show_next(self, scene: Scene, mailbox: Mailbox[T]) -> None:
-        await self._on_thread(scene.show, self._source.view(await mailbox.get()))
+        self._shown = view = self._source.view(await mailbox.get())
+        await self._on_thread(scene.show, view)
 
     async def _on_thread(self, draw: Callable[..., Any], *what: Any) -> Any:
         return await asyncio.get_running_loop().run_in_executor(self._thread, draw, *what)

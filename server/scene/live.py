@@ -6,8 +6,10 @@ from typing import TYPE_CHECKING
 
 from control.snapshot import Snapshot
 from server.scene.geometry import geometry_of
+from server.scene.plate_pictures import Photograph
 from server.scene.robot import ShownRobot
 from server.scene.scene import View
+from server.scene.shapes import full_field
 
 if TYPE_CHECKING:
     from server.rig import Rig
@@ -25,16 +27,26 @@ class LiveView:
 
     def _renew(self) -> None:
         self._settings = self._rig.settings
-        self.geometry = geometry_of(self._settings, self._rig.coils)
+        self._camera = self._rig.machine.camera_model
+        self.geometry = geometry_of(self._settings, self._rig.coils, self._camera)
         self._views = 0
 
     def view(self, snapshot: Snapshot) -> View:
-        if self._settings is not self._rig.settings:
+        if self._settings is not self._rig.settings or self._camera is not self._rig.machine.camera_model:
             self._renew()
         if self._views % PATH_EVERY == 0:
             self._path = self._rig.reference_points()
         self._views += 1
         robot = ShownRobot(
-            snapshot.pose, snapshot.command.pivot, snapshot.body_tilt, self._path, self._rig.trail()
+            snapshot.pose,
+            snapshot.command.pivot,
+            snapshot.body_tilt,
+            self._path,
+            self._rig.trail(),
+            snapshot.reference,
         )
-        return View(self.geometry, snapshot.currents, (robot,))
+        return View(self.geometry, snapshot.currents, (robot,), full_field(self._rig.walked.gait.field))
+
+    def photograph(self) -> Photograph | None:
+        frame = self._rig.frame
+        return None if frame is None else Photograph(frame.image, frame.index)

@@ -21,7 +21,14 @@ HIDDEN = (
 )
 """The panel, the same on narrow screens, and a notice that covers half of a small picture."""
 
-STYLE = f"<style>{', '.join(HIDDEN)} {{ display: none !important }}</style>"
+GROUND = """
+:root, body { background: #f5f7f9 !important; color-scheme: light dark !important }
+@media (prefers-color-scheme: dark) { :root, body { background: #1f262d !important } }
+#root div:has(canvas) { background-color: transparent !important }
+"""
+"""The page's own ground behind the scene, light or dark as the system's choice is, which may change meanwhile."""
+
+STYLE = f"<style>{', '.join(HIDDEN)} {{ display: none !important }}{GROUND}</style>"
 
 
 @cache

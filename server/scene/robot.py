@@ -1,4 +1,4 @@
-"""A robot in the scene: its body with the tilt, the pivot it stands on, its reference path and its trail."""
+"""A robot in the scene: its body with the tilt, the pivot it stands on, its reference with the target, its trail."""
 
 from __future__ import annotations
 
@@ -9,17 +9,17 @@ import viser
 from numpy.typing import NDArray
 
 from control.model import Pivot, Pose, pivot_point
-from server.scene.geometry import RobotSize
+from server.scene.geometry import CM, RobotSize
+from server.scene.layers import root_of
 from server.scene.shapes import body_attitude, segments_through
-
-CM = 100.0
-"""Scene units per metre."""
 
 Colour = tuple[int, int, int]
 END_A: Colour = (86, 180, 233)
 END_B: Colour = (230, 159, 0)
 PIVOT: Colour = (255, 255, 255)
 
+TARGET = 0.22
+"""Radius of the ball that marks where the robot should be, cm."""
 CAP = 0.2
 """Share of the body's length that each end's colour takes."""
 LINE_HEIGHT = 0.0004
@@ -30,13 +30,17 @@ LONGEST_LINE = 240
 
 @dataclass(frozen=True, slots=True)
 class ShownRobot:
-    """A robot at one instant. pose: None while it is not known.  body_tilt: rad.  path, trail: (n, 2) m."""
+    """A robot at one instant. pose: None while it is not known.  body_tilt: rad.  path, trail: (n, 2) m.
+
+    target: where on its path it should be now, m; None while it follows none.
+    """
 
     pose: Pose | None
     pivot: Pivot
     body_tilt: float
     path: NDArray[np.float64]
     trail: NDArray[np.float64]
+    target: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,21 +61,31 @@ LOOKS = (
 
 
 class RobotNodes:
-    """The nodes of one robot. root: the name under which they stand, "" for the scene's top."""
+    """The nodes of one robot. number: 0 for the first, 1 for the one that it is compared with."""
 
-    def __init__(self, scene: viser.SceneApi, root: str, size: RobotSize, looks: Looks) -> None:
-        self._scene, self._root, self._size = scene, root, size
+    def __init__(self, scene: viser.SceneApi, number: int, size: RobotSize, looks: Looks) -> None:
+        self._scene, self._size = scene, size
+        self._number = number
+        self._root = f"/compared/{number}" if number else ""
         self._drawn: dict[str, NDArray[np.float64]] = {}
-        self.body = scene.add_frame(f"{root}/robot", show_axes=False)
+        self.body = scene.add_frame(f"{self._root}/robot", show_axes=False)
         self._body_nodes(looks)
-        self.pivot = scene.add_icosphere(f"{root}/pivot", radius=0.14, color=PIVOT)
+        self.pivot = scene.add_icosphere(f"{self._root}/pivot", radius=0.14, color=PIVOT)
+        self.target = scene.add_icosphere(
+            f"{root_of('reference')}/{number}/target",
+            radius=TARGET,
+            color=looks.path,
+            opacity=0.5,
+            visible=False,
+        )
         self.lines = {
-            "path": self._line("path", looks.path, 0.08),
-            "trail": self._line("trail", looks.trail, 0.07),
+            "path": self._line(f"{root_of('reference')}/{number}/path", looks.path, 0.08),
+            "trail": self._line(f"{root_of('trail')}/{number}", looks.trail, 0.07),
         }
 
     def show(self, robot: ShownRobot) -> None:
         self._place(robot)
+        self._place_target(robot.target)
         self._show_line("path", robot.path)
         self._show_line("trail", robot.trail)
 
@@ -91,9 +105,7 @@ class RobotNodes:
 
     def _line(self, name: str, colour: Colour, thickness: float) -> viser.LineSegmentsHandle:
         nothing = np.zeros((1, 2, 3))
-        return self._scene.add_line_segments(
-            f"{self._root}/{name}", nothing, colour, thickness=thickness, visible=False
-        )
+        return self._scene.add_line_segments(name, nothing, colour, thickness=thickness, visible=False)
 
     def _place(self, robot: ShownRobot) -> None:
         self.body.visible = self.pivot.visible = robot.pose is not None
@@ -105,6 +117,11 @@ class RobotNodes:
         self.body.wxyz = wxyz
         x, y = pivot_point(robot.pose, robot.pivot, size.length)
         self.pivot.position = (x * CM, y * CM, 0.0)
+
+    def _place_target(self, target: tuple[float, float] | None) -> None:
+        self.target.visible = target is not None
+        if target is not None:
+            self.target.position = (target[0] * CM, target[1] * CM, LINE_HEIGHT * CM)
 
     def _show_line(self, name: str, points: NDArray[np.float64]) -> None:
         """Sent only when it has changed: a path does not for minutes."""

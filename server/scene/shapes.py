@@ -18,10 +18,16 @@ GRID = 7
 """Arrows along each side of the workspace: 49 in all, which a browser draws in software at 10 a second."""
 ARROW_HEIGHT = 0.004
 """The arrows' height above the plate, m: just over the robot."""
+ABOVE_ROBOT = 0.008
+"""Height of the one arrow at the robot, m: clear of its raised end."""
+SCALES_mT = (1, 2, 3, 4, 5, 6, 8, 10, 12, 15, 20, 25, 30, 40, 50, 60)
+"""Ends of the field's scale that there are, so that it seldom changes and reads well."""
+RESERVE = 1.2
+"""The field at the workspace's rim over the gait's, which holds where the robot is."""
 FULL_FIELD = 0.012
-"""Field of the colour scale's end, T: the rig's 10 mT and some reserve."""
+"""End of the scale where no gait is known, T: that of the paper's 10 mT."""
 ARROW_LENGTH = 0.016
-"""Length of an arrow at `FULL_FIELD`, m: shorter than the grid's 20 mm."""
+"""Length of an arrow at the scale's end, m: shorter than the grid's 20 mm."""
 VISIBLE_FIELD = 5e-5
 """Below this the field is not drawn, T: the earth's."""
 
@@ -29,7 +35,8 @@ CIVIDIS = np.array(
     [[0, 34, 78], [53, 69, 108], [102, 105, 112], [148, 142, 119], [200, 184, 102], [254, 232, 56]],
     dtype=float,
 )
-"""Anchors of the cividis colour map, which reads alike with and without colour blindness."""
+"""Anchors of the cividis colour map, which reads alike with and without colour blindness. The page's legend has the
+same ones."""
 
 
 def ring_segments(pair: CoilPair) -> Floats:
@@ -90,7 +97,7 @@ def turn_then_lift(heading: float, lift: float) -> tuple[float, float, float, fl
 
 
 class FieldArrows:
-    """A grid of arrows over the plate: field directions, lengths and colours from the coil currents.
+    """The field on a grid over the plate.
 
     The field is linear in the currents, so the grid's field per ampere is worked out once.
     """
@@ -99,24 +106,30 @@ class FieldArrows:
         steps = np.linspace(-workspace, workspace, GRID)
         x, y = np.meshgrid(steps, steps)
         self.origins: Floats = np.column_stack([x.ravel(), y.ravel(), np.full(x.size, ARROW_HEIGHT)])
-        unit_currents = np.eye(3)
-        fields = [coils.field_at(self.origins, current) for current in unit_currents]
-        self._per_ampere: Floats = np.stack(fields, axis=-1)
+        self._per_ampere: Floats = coils.field_per_ampere(self.origins)
 
     def field(self, currents: Vector) -> Floats:
         """Field (n, 3) T at the origins."""
         return self._per_ampere @ np.asarray(currents)
 
-    def is_visible(self, currents: Vector) -> bool:
-        return bool(np.linalg.norm(self.field(currents), axis=1).max() > VISIBLE_FIELD)
 
-    def for_currents(self, currents: Vector) -> tuple[Floats, NDArray[np.uint8]]:
-        """Arrows (n, 2, 3) m, centred on their origins, and their colours (n, 3)."""
-        field = self.field(currents)
-        half = 0.5 * ARROW_LENGTH / FULL_FIELD * field
-        half[:, 2] += 1e-6  # a direction also where there is no field
-        strength = np.linalg.norm(field, axis=1) / FULL_FIELD
-        return np.stack([self.origins - half, self.origins + half], axis=1), colours(strength)
+def full_field(gait_field: float) -> float:
+    """End of the field's scale (T) for a gait of this field (T)."""
+    needed = RESERVE * gait_field * 1e3 - 1e-9
+    return next((scale for scale in SCALES_mT if scale >= needed), SCALES_mT[-1]) * 1e-3
+
+
+def is_visible(field: Floats) -> bool:
+    """Whether a field (n, 3) T is more than the earth's anywhere."""
+    return bool(np.linalg.norm(field, axis=1).max() > VISIBLE_FIELD)
+
+
+def arrows_of(field: Floats, origins: Floats, full_field: float) -> tuple[Floats, NDArray[np.uint8]]:
+    """Arrows (n, 2, 3) m, centred on their origins, of a field (n, 3) T, and their colours (n, 3)."""
+    half = 0.5 * ARROW_LENGTH / full_field * field
+    half[:, 2] += 1e-6  # a direction also where there is no field
+    strength = np.linalg.norm(field, axis=1) / full_field
+    return np.stack([origins - half, origins + half], axis=1), colours(strength)
 
 
 def colours(share: Floats) -> NDArray[np.uint8]:

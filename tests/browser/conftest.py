@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import os
 import re
 import shutil
 from collections.abc import Iterator
@@ -11,13 +12,21 @@ from pathlib import Path
 import pytest
 from dashboard_visit import PATIENCE, OpenTab, ServedRig, Visit
 from playwright.sync_api import Browser, expect, sync_playwright
+from rooms import Room, spread_over_rooms
 
 CHROMIUM_ARGS = ("--no-sandbox", "--use-angle=gl-egl", "--ignore-gpu-blocklist", "--disable-gpu-compositing")
 """WebGL in software for the scene; without a graphics card, composing the page itself is cheaper without it."""
 
+TOUR_SEEN = 'localStorage.setItem("pivotrig.tour", "done")'
+"""What a browser remembers of a person who has been here before."""
+
 SCENE_PAGE = re.compile(r"^https?://[^/]+/scene/")
 
 expect.set_options(timeout=PATIENCE * 1e3)
+
+
+def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
+    spread_over_rooms(metafunc, everywhere=os.environ.get("PIVOTRIG_FULL") == "1")
 
 
 @pytest.fixture(scope="session")
@@ -62,22 +71,39 @@ def tabs(browser: Browser) -> Iterator[OpenTab]:
     """Opens a page of a server in a window of a size; everything is closed afterwards.
 
     scene: where it is not looked at it may stay empty, since drawing it in software costs more than all the rest.
+    tour: the browser has not seen it yet.
+    room: the window, in place of a size.
     """
+    visits: list[Visit] = []
     with contextlib.ExitStack() as stack:
 
-        def open_tab(url: str, width: int = 1440, height: int = 900, *, scene: bool = True) -> Visit:
-            context = browser.new_context(viewport={"width": width, "height": height})
+        def open_tab(
+            url: str,
+            width: int = 1440,
+            height: int = 900,
+            *,
+            scene: bool = True,
+            tour: bool = False,
+            room: Room | None = None,
+        ) -> Visit:
+            context = browser.new_context(**(room or Room(width, height)).window())
             stack.callback(context.close)
+            if not tour:
+                context.add_init_script(TOUR_SEEN)
             page = context.new_page()
             if not scene:
                 page.route(SCENE_PAGE, lambda route: route.fulfill(content_type="text/html", body=""))
             page.set_default_timeout(PATIENCE * 1e3)
             visit = Visit(page)
             visit.watch(context)
+            visits.append(visit)
             page.goto(url)
             return visit
 
         yield open_tab
+        for visit in visits:
+            assert visit.elsewhere() == [], "a page asks its own server alone"
+            assert visit.refused == [], "a page keeps to its own policy"
 
 
 @pytest.fixture

@@ -25,6 +25,13 @@ STOP_TIMEOUT = 10.0
 READY_LINE = re.compile(r"dashboard: (http://\S+)")
 REFUSAL = re.compile(r"responded with a status of (409|422)")
 """The browser itself notes each refused request; what the page makes of it is what is tested."""
+LOCAL_SCHEMES = ("blob:", "data:", "about:")
+TELLS_OF_REFUSALS = """
+document.addEventListener("securitypolicyviolation", ({ violatedDirective, blockedURI, sourceFile, lineNumber }) =>
+  tellOfRefusal(`${violatedDirective}: ${blockedURI} (${sourceFile}, line ${lineNumber})`));
+"""
+"""For each document of a tab, frames included: what its policy has kept it from."""
+
 PATIENCE = 15.0
 """What a person would wait for on two cores with software WebGL, s."""
 
@@ -67,6 +74,15 @@ class ServedRig:
     def stop(self) -> None:
         self._end(signal.SIGTERM)
 
+    def freeze(self) -> None:
+        """It falls silent, with all its connections open, until `thaw`."""
+        assert self._process is not None
+        self._process.send_signal(signal.SIGSTOP)
+
+    def thaw(self) -> None:
+        assert self._process is not None
+        self._process.send_signal(signal.SIGCONT)
+
     def _end(self, how: signal.Signals) -> None:
         process, self._process = self._process, None
         if process is None:
@@ -103,13 +119,16 @@ class ServedRig:
 
 @dataclass
 class Visit:
-    """One tab: the page, and what it asked for and complained about."""
+    """One tab: the page, and what it asked for, complained about, and was refused by its own policy."""
 
     page: Page
     requests: list[str] = field(default_factory=list)
     complaints: list[str] = field(default_factory=list)
+    refused: list[str] = field(default_factory=list)
 
     def watch(self, context: BrowserContext) -> None:
+        context.expose_function("tellOfRefusal", lambda refusal: self.refused.append(refusal))
+        context.add_init_script(TELLS_OF_REFUSALS)
         context.on("request", lambda request: self.requests.append(request.url))
         self.page.on("websocket", lambda socket: self.requests.append(socket.url))
         self.page.on("pageerror", lambda error: self.complaints.append(str(error)))
@@ -122,10 +141,14 @@ class Visit:
     def foreign(self, url: str) -> list[str]:
         """Requests that went anywhere else than to the server itself."""
         home = urlsplit(url).netloc
-        local = ("blob:", "data:", "about:")
-        return [
-            seen for seen in self.requests if not seen.startswith(local) and urlsplit(seen).netloc != home
-        ]
+        return [seen for seen in self._sent() if urlsplit(seen).netloc != home]
+
+    def elsewhere(self) -> list[str]:
+        """Requests to another server than the first one."""
+        return self.foreign(self._sent()[0]) if self._sent() else []
+
+    def _sent(self) -> list[str]:
+        return [seen for seen in self.requests if not seen.startswith(LOCAL_SCHEMES)]
 
 
 def rig_state(page: Page) -> Locator:

@@ -10,7 +10,19 @@ from playwright.sync_api import Locator
 
 def pixels(place: Locator) -> NDArray[np.uint8]:
     """A screenshot of one element, (height, width, 3) BGR."""
-    picture = cv2.imdecode(np.frombuffer(place.screenshot(), np.uint8), cv2.IMREAD_COLOR)
+    return decoded(place.screenshot())
+
+
+def pixels_in_view(place: Locator) -> NDArray[np.uint8]:
+    """The same of an element in the window, at once, also on a busy page; black where there is none."""
+    box = place.bounding_box() if place.count() == 1 else None
+    if box is None:
+        return np.zeros((1, 1, 3), np.uint8)
+    return decoded(place.page.screenshot(clip=box, timeout=60e3))
+
+
+def decoded(png: bytes) -> NDArray[np.uint8]:
+    picture = cv2.imdecode(np.frombuffer(png, np.uint8), cv2.IMREAD_COLOR)
     assert picture is not None
     return np.asarray(picture, dtype=np.uint8)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from dashboard_visit import OpenTab, ServedRig, Visit, eventually
 from playwright.sync_api import expect
-from setup_visit import button, open_setup
+from setup_visit import button, open_setup, panel
 
 pytestmark = pytest.mark.exclusive
 
@@ -35,6 +35,33 @@ def test_a_board_that_was_left_by_a_page_that_was_closed_can_be_taken_away(
     expect(button(page, "Take the board away")).to_be_visible()
     page.reload()
     eventually(lambda: workshop.ask("/state")["tracking"] == "locked", "a page that is left takes it away")
+
+
+def test_the_overview_says_what_is_measured_and_leads_to_the_step_that_measures_it(
+    visit: Visit, workshop: ServedRig
+) -> None:
+    page = visit.page
+    page.get_by_role("tab", name="Calibration").click()
+    overview = page.get_by_role("region", name="Calibration", exact=True)
+    plane = overview.get_by_role("listitem", name="Plane", exact=True)
+    expect(plane).to_contain_text("assumed")
+    expect(overview.get_by_role("listitem", name="Field of the coils")).to_contain_text(
+        "pivotrig calibrate coils"
+    )
+    plane.get_by_role("button", name="Calibrate: Plane").click()
+    expect(page.get_by_role("tab", name="Plane")).to_have_attribute("aria-selected", "true")
+    expect(panel(page)).to_be_visible()
+    button(page, "Lay the printed board on the plate").click()
+    expect(button(page, "Take the board away")).to_be_visible()
+    button(page, "Look for the board").click()
+    button(page, "Save the plane").click()
+    expect(plane).to_contain_text("from the printed board")
+    expect(plane).to_contain_text("today")
+    # Pictures of another size are not those that it was found in.
+    workshop.send("PATCH", "/rig", {"camera": {"size_px": [320, 240]}})
+    expect(plane).to_contain_text("needs attention")
+    expect(plane).to_contain_text("Not used: it was made for")
+    assert visit.complaints == []
 
 
 def test_two_pages_see_each_other_s_saves_and_neither_undoes_the_other_s(

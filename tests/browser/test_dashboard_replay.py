@@ -5,21 +5,17 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import pytest
 from dashboard_visit import OpenTab, ServedRig, Visit, eventually, rig_state
 from picture import colours, pixels, share_like
 from playwright.sync_api import FloatRect, Locator, Page, expect
+from recorded_runs import walk
 
-from control.gait import Gait
-from control.runs import Choice, RunRequest, Selection
 from server.archive import Archive
-from server.assembly import build_machine
-from server.headless import Headless
 from server.recording.reading.recording import Recording
 from server.recording.topics import as_tick
-from server.settings import RigFile
 
 pytestmark = pytest.mark.exclusive
 
@@ -45,16 +41,6 @@ class Library:
 
     def address(self, *ids: str) -> str:
         return f"{self.rig.url}/#replay={','.join(ids)}"
-
-
-def walk(archive: Archive, label: str, sweep_deg: float, duration: float) -> str:
-    id = f"20260101-000000-{label.split()[0]}"
-    selection = replace(
-        Selection(), trajectory=Choice("circle", {}), gait=Gait(sweep=math.radians(sweep_deg))
-    )
-    request = RunRequest(selection, duration=duration, label=label)
-    Headless(build_machine(RigFile(), realtime=False), recorder=archive.recorder).run(id, request)
-    return id
 
 
 @pytest.fixture(scope="module")

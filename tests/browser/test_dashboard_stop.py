@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+
 import pytest
 from dashboard_visit import ServedRig, Visit, eventually, rig_state
 from playwright.sync_api import expect
@@ -28,6 +30,21 @@ def test_stop_leads_to_a_fault_that_only_reset_and_arm_leave(dashboard: Visit, h
     page.get_by_role("button", name="Reset", exact=True).click()
     expect(rig_state(page)).to_contain_text("disarmed")
     expect(page.get_by_role("button", name="Arm", exact=True)).to_be_enabled()
+
+
+def test_a_key_stops_from_every_tab(dashboard: Visit) -> None:
+    """The focus is on the tab, which the space bar would press anywhere else."""
+    page = dashboard.page
+    tabs = ["Runs", "Studies", "Calibration", "Rig", "Log", "Faults"]
+    expect(page.get_by_role("tab")).to_have_count(len(tabs))
+    for tab, key in zip(tabs, itertools.cycle(["Escape", "Space"]), strict=False):
+        arm(dashboard)
+        page.get_by_role("tab", name=tab).click()
+        expect(page.get_by_role("tabpanel", name=tab)).to_be_visible()
+        page.keyboard.press(key)
+        expect(rig_state(page)).to_contain_text("fault")
+        page.get_by_role("button", name="Reset", exact=True).click()
+        expect(rig_state(page)).to_contain_text("disarmed")
 
 
 def test_escape_stops_while_the_scene_has_the_focus(dashboard_with_scene: Visit) -> None:
@@ -59,5 +76,5 @@ def test_the_question_mark_shows_the_keys_and_leaves_stop_in_reach(dashboard: Vi
     expect(page.get_by_role("dialog")).to_contain_text("Escape")
     page.get_by_role("button", name="STOP", exact=True).click()
     expect(rig_state(page)).to_contain_text("fault")
-    page.get_by_role("button", name="Close").click()
+    page.get_by_role("dialog").get_by_role("button", name="Close").click()
     expect(page.get_by_role("dialog")).to_be_hidden()

@@ -9,8 +9,9 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
+from control.simulation.faults.promises import FAULT, GO_ON
 from control.snapshot import RigState
-from tests.faults.promises import PROMISES, RESET
+from tests.faults.promises import PROMISES
 from tests.faults.trial import Trial, try_out
 
 DOCUMENT = Path(__file__).parents[2] / "SAFETY.md"
@@ -47,7 +48,7 @@ EVENTS = (
         "at once, before anything is closed", "start pivotrig; it is disarmed", "test_ending_with_viewers",
     ),
     OutsideEvent(
-        "Emergency stop: page, `POST /api/v1/estop`, `kill -USR1`", "emergency stop", "fault", "at once", RESET,
+        "Emergency stop: page, `POST /api/v1/estop`, `kill -USR1`", "emergency stop", "fault", "at once", GO_ON[FAULT],
         "test_computer_dies",
     ),
     OutsideEvent(

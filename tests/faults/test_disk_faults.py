@@ -10,6 +10,7 @@ import pytest
 
 from control.news import Announcement
 from control.safety import Refused
+from control.simulation.faults.promises import FRAME
 from control.snapshot import RigState
 from server.archive import Archive
 from server.recording.reading.recording import Recording
@@ -25,7 +26,6 @@ from tests.faults.invariants import (
     check_zero,
     nothing_left_behind,
 )
-from tests.faults.promises import FRAME
 from tests.faults.trial import keeps_its_promise
 
 SIMULATED = RigFile().with_simulation(seed=3)

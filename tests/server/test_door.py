@@ -239,20 +239,44 @@ async def test_every_answer_carries_the_headers_that_keep_a_browser_careful():
         assert response.headers["referrer-policy"] == "no-referrer"
         assert response.headers["cross-origin-resource-policy"] == "same-origin"
         policy = response.headers["content-security-policy"]
-        assert "frame-ancestors 'self'" in policy
+        assert "default-src 'none'" in policy
+        assert "frame-ancestors 'none'" in policy
         assert "unsafe" not in policy
 
 
 async def test_a_host_header_cannot_write_into_the_policy():
     response = await request(headers={"Host": "localhost; script-src *:80"})
     assert response.status_code == 403
-    assert "; script-src" not in response.headers["content-security-policy"]
+    policy = response.headers["content-security-policy"]
+    assert [rule.split()[0] for rule in policy.split(";")].count("script-src") == 1
+    assert "*" not in policy
 
 
 async def test_only_the_scene_may_evaluate():
-    for path, evaluates in (("/scene/", True), ("/", False), ("/docs", False), ("/static/scene.js", False)):
+    for path, evaluates in (
+        ("/scene/", True),
+        ("/scene/abc/", True),
+        ("/", False),
+        ("/docs", False),
+        ("/static/scene.js", False),
+        ("/scenery", False),
+    ):
         response = await request(url=OWN + path)
         assert ("unsafe-eval" in response.headers["content-security-policy"]) is evaluates
+
+
+async def test_a_document_that_is_opened_by_itself_runs_nothing():
+    for path in ("/api/v1/studies/one/report", "/api/v1/runs/one/plot.svg", "/api/v1/calibration/board.pdf"):
+        policy = (await request(url=OWN + path)).headers["content-security-policy"]
+        assert "default-src 'none'" in policy
+        assert "script-src" not in policy
+        assert "connect-src" not in policy
+
+
+async def test_only_the_scene_may_stand_in_a_frame_and_only_in_our_own():
+    for path, ancestors in (("/scene/", "'self'"), ("/", "'none'"), ("/docs", "'none'"), ("/report", "'none'")):
+        policy = (await request(url=OWN + path)).headers["content-security-policy"]
+        assert f"frame-ancestors {ancestors}" in policy
 
 
 @pytest.fixture

@@ -37,6 +37,16 @@ async def test_telemetry_brings_the_state_in_order(at, api):
     assert set(tick) == {"type", *state}
 
 
+async def test_the_first_word_of_telemetry_says_who_the_server_is(at, api):
+    """A page knows by it that it is of another version, or that the server has started anew."""
+    async with at.socket("/api/v1/telemetry") as telemetry:
+        greeting = json.loads(await telemetry.recv())
+    assert greeting["type"] == "server"
+    assert greeting["version"] == (await api.get("/health")).json()["version"]
+    async with at.socket("/api/v1/telemetry") as telemetry:
+        assert json.loads(await telemetry.recv()) == greeting
+
+
 @pytest.mark.parametrize("rate", [5.0, 30.0])
 async def test_telemetry_keeps_to_the_rate_that_was_asked_for(at, rate):
     async with at.socket(f"/api/v1/telemetry?rate_Hz={rate}") as telemetry:

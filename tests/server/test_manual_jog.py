@@ -8,10 +8,12 @@ import pytest
 
 from control.controllers.manual import HOLD, Jog, Manual
 from control.gait import Gait
-from control.model import PIVOT_A, PIVOT_B, wrap
+from control.model import PIVOT_A, PIVOT_B, Pose, wrap
 from control.runs import RunRequest
 from control.safety import Refused
 from control.snapshot import RigState
+from control.steering import Steering
+from control.workspace_guard import WorkspaceGuard
 from server.assembly import build_machine
 from server.settings import RigFile
 from tests.server.test_complete_loop import EIGHT, Bench
@@ -91,6 +93,16 @@ def test_a_rate_beyond_the_rig_is_refused_and_changes_nothing(armed: Bench) -> N
     armed.run_for(0.1)
     assert armed.snapshot.rig is RigState.ARMED
     assert armed.snapshot.command.rate == 0.0
+
+
+@pytest.mark.parametrize("x", [0.05, 0.5, math.nan])
+def test_to_stop_is_never_refused_wherever_the_robot_is(bench: Bench, x: float) -> None:
+    """At the edge of the workspace a swing may lead out of it; letting go does not."""
+    steering = Steering(bench.loop.parts, WorkspaceGuard(0.06, 0.07, 0.01))
+    steering.take(Jog(PIVOT_A, 0.0), Pose(x, 0.0, 0.0), 1.0)
+    if not x < 0.06:
+        with pytest.raises(Refused, match="leads out of the workspace"):
+            steering.take(Jog(PIVOT_A, RATE), Pose(x, 0.0, 0.0), 1.0)
 
 
 def test_a_jog_does_not_outlive_a_disarming(armed: Bench) -> None:

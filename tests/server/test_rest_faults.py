@@ -169,3 +169,30 @@ async def test_a_hanging_controller_is_latched_and_let_go_again(api):
         assert time.monotonic() < give_up, answer.text
         await asyncio.sleep(0.05)
     assert answer.json()["rig"] == "disarmed"
+
+
+async def test_what_is_promised_stands_beside_what_the_rig_did(api):
+    """The figures are the rig's own; on a busy computer they may be late, which is what the verdict then says."""
+    await walk(api)
+    before = await entry(api, "line_unplugged")
+    assert before["promise"]["states"] == ["disarmed"]
+    assert before["promise"]["noticed_ms"] == 34
+    await api.post(FAULTS, json={"name": "line_unplugged"})
+    async with asyncio.timeout(10.0):
+        while (reaction := (await entry(api, "line_unplugged"))["reaction"])["verdict"] == "watching":
+            await asyncio.sleep(0.05)
+    await api.delete(FAULTS)
+    assert (reaction["was"], reaction["became"]) == ("running", "disarmed")
+    assert reaction["reason"]
+    assert 0 < reaction["noticed_ms"] < 1000
+    assert 0 < reaction["gone_ms"] < 1000
+    assert reaction["verdict"] in ("kept", "broken")
+
+
+async def test_a_rig_at_rest_has_nothing_to_show(api):
+    await walk(api)
+    await api.post("/disarm", json={})
+    await until(api, lambda state: state["rig"] == "disarmed")
+    answer = await api.post(FAULTS, json={"name": "camera_frozen"})
+    assert answer.json()["reaction"]["verdict"] == "at_rest"
+    await api.delete(FAULTS)

@@ -234,7 +234,11 @@ async def test_events_are_paged_and_filtered(running):
     await act(running, "/estop")
     whole = (await running.get("/events", params={"limit": 2})).json()
     assert len(whole["events"]) == 2
-    assert whole["next"] == 2
+    assert whole["next"] == whole["events"][-1]["number"]
+    rest = (await running.get("/events", params={"limit": 500, "cursor": whole["next"]})).json()
+    numbers = [event["number"] for event in (*whole["events"], *rest["events"])]
+    assert numbers == list(range(len(numbers), 0, -1))
+    assert rest["next"] is None
     errors = (await running.get("/events", params={"severity": "error"})).json()["events"]
     assert errors[0]["code"] == "estop"
     assert {event["severity"] for event in errors} == {"error"}

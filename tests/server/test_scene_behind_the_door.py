@@ -21,6 +21,7 @@ from server.scene.bridge import CameraPose, admitted
 from server.scene.page import HIDDEN, PAGE, page
 from server.scene.robot import ShownRobot
 from server.scene.scene import View
+from server.scene.shapes import arrows_of
 from server.settings import RigFile
 
 pytestmark = pytest.mark.anyio
@@ -109,7 +110,15 @@ async def test_a_newcomer_sees_the_rig_as_it_is_now(at):
             viewer, lambda message: message["type"] == "SetPositionMessage" and message["name"] == "/robot"
         )
     created = {message["name"] for message in found if "name" in message and "props" in message}
-    assert {"/coils/x", "/coils/y", "/coils/z", "/plate", "/workspace", "/field", "/robot/body"} <= created
+    assert {
+        "/coils/x",
+        "/coils/y",
+        "/coils/z",
+        "/plate",
+        "/workspace",
+        "/field/grid",
+        "/robot/body",
+    } <= created
     position = [m for m in found if m["type"] == "SetPositionMessage" and m["name"] == "/robot"][-1][
         "position"
     ]
@@ -169,8 +178,9 @@ async def test_the_scenes_arrows_and_robot_follow_the_snapshot(at):
     path, currents = np.array([[0.0, 0.0], [0.01, 0.0]]), (2.0, -1.0, 0.5)
     walking = ShownRobot(Pose(0.01, 0.02, 0.5), 1, 0.1, path, path[:0])
     await asyncio.to_thread(scene.show, View(scene._geometry, currents, [walking]))
-    points, _ = scene._arrows.for_currents(currents)
+    points, _ = arrows_of(scene._arrows.field(currents), scene._arrows.origins, 0.012)
     assert scene._field.visible
+    assert scene._field_at_robot.visible
     assert scene._field.points == pytest.approx(points * 100, abs=1e-4)
     [robot] = scene.robots
     assert robot.body.position[:2] == pytest.approx([1.0, 2.0], abs=0.1)
@@ -178,6 +188,7 @@ async def test_the_scenes_arrows_and_robot_follow_the_snapshot(at):
     lost = replace(walking, pose=None, trail=path)
     await asyncio.to_thread(scene.show, View(scene._geometry, (0.0, 0.0, 0.0), [lost]))
     assert not scene._field.visible
+    assert not scene._field_at_robot.visible
     assert not robot.body.visible
 
 

@@ -1,18 +1,26 @@
 import math
+import re
+from pathlib import Path
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+import web
 from control.coils import PAPER_PAIRS, CoilSet
 from control.model import Pose, pivot_point
 from server.scene.shapes import (
     ARROW_LENGTH,
+    CIVIDIS,
     FULL_FIELD,
     FieldArrows,
+    SCALES_mT,
+    arrows_of,
     body_attitude,
     colours,
+    full_field,
+    is_visible,
     ring_segments,
     segments_through,
     square,
@@ -69,28 +77,46 @@ def test_a_flat_body_looks_where_it_walks(heading, pivot):
 def test_arrows_follow_the_currents(arrows):
     currents = (1.0, -2.0, 3.0)
     field = CoilSet().field_at(arrows.origins, currents)
-    points, _ = arrows.for_currents(currents)
+    points, _ = arrows_of(arrows.field(currents), arrows.origins, FULL_FIELD)
     along = points[:, 1] - points[:, 0]
     assert along == pytest.approx(field * ARROW_LENGTH / FULL_FIELD, abs=1e-5)
     assert points.mean(axis=1) == pytest.approx(arrows.origins, abs=1e-9)
 
 
 def test_opposite_currents_turn_every_arrow_round(arrows):
-    there, _ = arrows.for_currents((2.0, 1.0, 0.5))
-    back, _ = arrows.for_currents((-2.0, -1.0, -0.5))
+    fields = (arrows.field((2.0, 1.0, 0.5)), arrows.field((-2.0, -1.0, -0.5)))
+    (there, _), (back, _) = (arrows_of(field, arrows.origins, FULL_FIELD) for field in fields)
     assert (there[:, 1] - there[:, 0])[:, :2] == pytest.approx(-(back[:, 1] - back[:, 0])[:, :2])
 
 
 def test_without_current_there_is_no_arrow_to_see(arrows):
-    assert not arrows.is_visible((0.0, 0.0, 0.0))
-    assert arrows.is_visible((1.0, 0.0, 0.0))
-    points, _ = arrows.for_currents((0.0, 0.0, 0.0))
+    nothing = arrows.field((0.0, 0.0, 0.0))
+    assert not is_visible(nothing)
+    assert is_visible(arrows.field((1.0, 0.0, 0.0)))
+    points, _ = arrows_of(nothing, arrows.origins, FULL_FIELD)
     assert np.isfinite(points).all()
 
 
 def test_a_stronger_field_is_brighter():
     brightness = colours(np.linspace(0.0, 1.5, 20)).astype(float) @ [0.299, 0.587, 0.114]
     assert (np.diff(brightness) >= 0.0).all()
+
+
+def test_the_scale_has_room_for_the_gaits_field_and_seldom_changes():
+    """Round numbers: the paper's 10 mT and the 9 mT beside it have the same one."""
+    assert full_field(0.010) == full_field(0.009) == FULL_FIELD
+    for gait in np.linspace(0.0005, 0.050, 60):
+        assert 1.2 * gait <= full_field(gait) * (1 + 1e-9)
+    assert full_field(5.0) == SCALES_mT[-1] * 1e-3
+
+
+def test_the_pages_legend_has_the_colours_of_the_arrows():
+    sheet = (Path(web.__file__).parent / "styles" / "scene.css").read_text(encoding="utf-8")
+    anchors = re.search(r"linear-gradient\(to right, (.*)\);", sheet)
+    assert anchors is not None
+    assert [
+        [int(part) for part in rgb.split()] for rgb in re.findall(r"rgb\(([\d ]+)\)", anchors[1])
+    ] == CIVIDIS.tolist()
 
 
 @given(st.integers(0, 2000), st.integers(2, 300))

@@ -1,7 +1,9 @@
 /** The bar: what rig this is, what it does and why, how well the loop runs, and STOP. */
+import { countIn } from "../faults/catalogue.js";
+import { showTab } from "../journal/tab.js";
 import { trackingWords } from "../camera/tracking.js";
-import { KeySheet } from "../keys/keys.js";
-import { stopNow } from "../live/actions.js";
+import { KeySheet } from "../keys/sheet.js";
+import { stopNow } from "../live/stop.js";
 import { RecordingSign } from "../runs/sign.js";
 import { useStore } from "../store.js";
 import { quantity } from "../units.js";
@@ -23,6 +25,7 @@ export function Bar() {
         <h1>${rig?.name ?? "pivotrig"}</h1>
         ${(tick?.simulated ?? rig?.simulated) && html`<span class="badge" title="No coil is real: camera, robot and board are simulated">SIM</span>`}
       </div>
+      <${FaultsIn} />
       <${State} tick=${tick} />
       <${RecordingSign} recording=${tick?.recording} />
       <${Vitals} tick=${tick} />
@@ -30,6 +33,13 @@ export function Bar() {
       <button class="stop" type="button" onClick=${stopNow} aria-keyshortcuts="Escape Space" title="Coils to zero, at once (Escape or Space)">STOP</button>
     </header>
   `;
+}
+
+/** So that nobody wonders why a simulated rig fails. */
+function FaultsIn() {
+  const count = useStore(countIn);
+  if (count === 0) return null;
+  return html`<button class="faults-in" type="button" title="Show the faults" onClick=${() => showTab("faults")}>${count === 1 ? "1 fault" : `${count} faults`}<span class="when-wide"> put in</span></button>`;
 }
 
 export const stateWord = (tick) => tick?.rig ?? "connecting";

@@ -11,6 +11,10 @@ const SEPARATION = [0.5, 0.2];
 
 const WORDS = ["good", "fair", "poor"];
 
+/**
+ * @param {unknown} value
+ * @param {number[]} limits of what is good, and of what will do
+ */
 function upTo(value, [good, fair]) {
   if (typeof value !== "number" || !Number.isFinite(value)) return "";
   return WORDS[value <= good ? 0 : value <= fair ? 1 : 2];

@@ -1,5 +1,5 @@
 /** What the camera's setup knows, asks and does: every answer lands in the store's `setup`, errors at their place. */
-import { get, set, useStore } from "../store.js";
+import { amend, get, set, useStore } from "../store.js";
 import { post, Problem, read } from "../live/rest.js";
 
 export const STEPS = ["camera", "colour", "lens", "plane", "robot"];
@@ -24,7 +24,8 @@ const SOURCES = {
 
 export const useSetup = (select) => useStore((state) => (state.setup ? select(state.setup) : null));
 
-export const change = (part) => get().setup && set({ setup: { ...get().setup, ...part } });
+/** @param {Partial<import("../types").Setup>} part */
+export const change = (part) => amend("setup", part);
 
 export function openSetup() {
   set({ setup: CLOSED });
@@ -37,6 +38,7 @@ export const closeSetup = () => set({ setup: null });
 /** What was said of one step does not stay for the next, but what could not be read at all does. */
 export function goTo(step) {
   const { setup } = get();
+  if (!setup) return;
   const unread = Object.keys(SOURCES).filter((name) => setup[name] === null).map((name) => [name, setup.errors[name]]);
   change({ step, errors: Object.fromEntries(unread), done: {} });
 }
@@ -71,8 +73,9 @@ export function note(kind, place, text) {
  * @returns what `call` answers, or null when it was refused or something else goes on
  */
 export async function doing(place, words, call) {
-  if (!get().setup || get().setup.working) return null;
-  change({ working: { place, words }, errors: { ...get().setup.errors, [place]: "" }, done: { ...get().setup.done, [place]: "" } });
+  const { setup } = get();
+  if (!setup || setup.working) return null;
+  change({ working: { place, words }, errors: { ...setup.errors, [place]: "" }, done: { ...setup.done, [place]: "" } });
   try {
     return (await call()) ?? true;
   } catch (problem) {

@@ -10,7 +10,7 @@ const REST = [8, 12, 16, 150];
 /** @returns draw({context, picture, size}, colour): everything but the colour goes dark */
 export function createMask() {
   const small = document.createElement("canvas");
-  const pen = small.getContext("2d", { willReadFrequently: true });
+  const pen = /** @type {CanvasRenderingContext2D} */ (small.getContext("2d", { willReadFrequently: true }));
   let madeAt = -Infinity;
   let madeOf = null;
   return ({ context, picture, size }, colour) => {

@@ -1,22 +1,16 @@
-/**
- * What is drawn over the camera picture. Colours are Okabe and Ito's, each line on a dark seam, so that they
- * hold on any picture and for every kind of colour vision; shapes and letters say the same a second time.
- */
-import { pivotPoint } from "./projection.js";
+/** What is drawn over the camera picture; shapes and letters say once more what the colours say. */
+import { drawRobot } from "./robot_overlay.js";
+import { COLOURS, letter, seamed, stroke, trace } from "./strokes.js";
 
-const COLOURS = {
-  A: "#56b4e9", B: "#e69f00", path: "#0072b2", target: "#f0e442", trail: "#ffffff", axis: "#ffffff", seam: "#10151b",
-  rival: "#cc79a7",
-};
 const DEFAULT_LENGTH_MM = 10;
-/** Length of the arrow that shows the heading, mm. */
-const ARROW_MM = 8;
 /** CSS px; around a robot, clear of its ends. */
 const RIVAL_RADIUS = 22;
 
 /**
- * @param context 2D context whose unit is one camera pixel; `pixel` is one CSS pixel in that unit
- * @param scene {project, bodyHeight_mm, length_mm, path, tick, trail, size}
+ * @param {CanvasRenderingContext2D} context whose unit is one camera pixel
+ * @param {number} pixel one CSS pixel in that unit
+ * @param {{project: (x_mm: number, y_mm: number, height_mm?: number) => [number, number], bodyHeight_mm: number,
+ *   length_mm?: number, path: any, tick: any, trail: any[], size: [number, number]}} scene
  */
 export function drawOverlay(context, pixel, scene) {
   const pen = { context, pixel, ...scene, length_mm: scene.length_mm ?? DEFAULT_LENGTH_MM };
@@ -77,81 +71,4 @@ function drawTarget({ context, pixel, tick, project }) {
     context.lineTo(u + du * radius * 1.7, v + dv * radius * 1.7);
   }
   seamed({ context, pixel }, COLOURS.target, 2);
-}
-
-function drawRobot(pen) {
-  const { context, pixel, tick, project, bodyHeight_mm, length_mm } = pen;
-  if (!tick.pose) return;
-  const at = (x, y) => project(x, y, bodyHeight_mm);
-  const ends = { A: pivotPoint(tick.pose, 1, length_mm), B: pivotPoint(tick.pose, -1, length_mm) };
-  trace(context, [at(...ends.B), at(...ends.A)]);
-  seamed(pen, COLOURS.axis, 2);
-  drawHeading(pen, at);
-  const active = tick.command?.field_mT > 0 ? (tick.command.pivot === 1 ? "A" : "B") : null;
-  const centre = at(tick.pose.x_mm, tick.pose.y_mm);
-  for (const name of ["A", "B"]) drawEnd(pen, { name, end: at(...ends[name]), centre, active: name === active });
-  context.setLineDash(tick.tracking === "locked" ? [] : [2 * pixel, 3 * pixel]);
-  drawCentre(pen, centre);
-  context.setLineDash([]);
-}
-
-function drawHeading(pen, at) {
-  const { x_mm, y_mm, heading_deg } = pen.tick.pose;
-  const heading = (heading_deg * Math.PI) / 180;
-  const from = at(x_mm, y_mm);
-  const tip = at(x_mm + ARROW_MM * Math.cos(heading), y_mm + ARROW_MM * Math.sin(heading));
-  const angle = Math.atan2(tip[1] - from[1], tip[0] - from[0]);
-  const barb = (turn) => [tip[0] - 6 * pen.pixel * Math.cos(angle + turn), tip[1] - 6 * pen.pixel * Math.sin(angle + turn)];
-  trace(pen.context, [from, tip]);
-  trace(pen.context, [barb(0.5), tip, barb(-0.5)], true);
-  seamed(pen, COLOURS.axis, 2);
-}
-
-function drawCentre({ context, pixel }, [u, v]) {
-  context.beginPath();
-  context.arc(u, v, 3 * pixel, 0, 2 * Math.PI);
-  seamed({ context, pixel }, COLOURS.axis, 1.5);
-}
-
-/** An end as a disc with its letter beside it; the pivot that is pressed down is full and ringed. */
-function drawEnd({ context, pixel }, { name, end: [u, v], centre, active }) {
-  context.beginPath();
-  context.arc(u, v, (active ? 5.5 : 4) * pixel, 0, 2 * Math.PI);
-  context.fillStyle = active ? COLOURS[name] : COLOURS.seam;
-  context.fill();
-  seamed({ context, pixel }, COLOURS[name], 2);
-  if (active) {
-    context.beginPath();
-    context.arc(u, v, 9 * pixel, 0, 2 * Math.PI);
-    seamed({ context, pixel }, COLOURS[name], 1.5);
-  }
-  const reach = 17 / Math.max(1e-6, Math.hypot(u - centre[0], v - centre[1]));
-  letter({ context, pixel }, name, [u + (u - centre[0]) * reach * pixel, v + (v - centre[1]) * reach * pixel]);
-}
-
-function letter({ context, pixel }, text, [u, v], colour = COLOURS[text]) {
-  context.textAlign = "center";
-  context.textBaseline = "middle";
-  context.font = `600 ${12 * pixel}px system-ui, sans-serif`;
-  context.lineWidth = 3 * pixel;
-  context.strokeStyle = COLOURS.seam;
-  context.strokeText(text, u, v);
-  context.fillStyle = colour;
-  context.fillText(text, u, v);
-}
-
-function trace(context, points, goOn = false) {
-  if (!goOn) context.beginPath();
-  points.forEach(([u, v], index) => (index === 0 ? context.moveTo(u, v) : context.lineTo(u, v)));
-}
-
-function stroke(context, colour, width) {
-  context.strokeStyle = colour;
-  context.lineWidth = width;
-  context.stroke();
-}
-
-function seamed({ context, pixel }, colour, width) {
-  stroke(context, COLOURS.seam, (width + 1.6) * pixel);
-  stroke(context, colour, width * pixel);
 }

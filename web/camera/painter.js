@@ -2,9 +2,14 @@
 import { drawOverlay } from "./overlay.js";
 import { ALONE } from "./pointing.js";
 import { projection } from "./projection.js";
+import { createSight } from "./sight.js";
+import { placed } from "./viewport.js";
+import { createZoom } from "./zoom.js";
 
 /** The overlay moves with the pictures; without any for this long it moves by itself, s. */
 const ALONE_S = 0.1;
+/** From this size on, device px, a camera pixel is shown as the square that it is. */
+const PIXEL_SEEN = 4;
 
 /**
  * @param {HTMLCanvasElement} canvas
@@ -12,14 +17,17 @@ const ALONE_S = 0.1;
  *        camera() -> {size, model} or null; open(view, show) -> {close}, with show(image data or null, then, about) for
  *        each picture and then() called once it is on the screen; onChange(listener) and onLayers(listener) -> forget;
  *        layers() to draw under the overlay; over(about) -> {path, trail, tick, length_mm}, about: of the picture shown
- * @returns painter with `show({view, overlay})`, `age_s()` of the newest picture, where in the picture an event is
- *          (`place(event)`), the picture's `size` and its `pixel` (a CSS pixel in camera pixels), and `close()`
+ * @param {import("./zoom.js").Zoom} zoom which part of the picture is shown
+ * @returns painter with `show({view, overlay})`, `age_s()` of the newest picture, its `sight`, and `close()`
  */
-export function createPainter(canvas, source) {
+export function createPainter(canvas, source, zoom = createZoom()) {
   const context = canvas.getContext("2d");
-  const painter = { source, picture: null, about: undefined, overlay: true, model: null, project: null, receivedAt: null };
+  /** @type {any} */
+  const painter = { source, zoom, picture: null, about: undefined, overlay: true, model: null, project: null, receivedAt: null };
   let requested = 0;
+  /** @type {{close: () => void} | null} */
   let frames = null;
+  /** @type {(() => void) | null} */
   let tellShown = null;
 
   function invalidate() {
@@ -61,46 +69,20 @@ export function createPainter(canvas, source) {
   resized.observe(canvas);
   const forgetChanges = source.onChange(() => (pictureAge(painter) ?? 1) > ALONE_S && invalidate());
   const forgetLayers = source.onLayers(invalidate);
+  const forgetZoom = zoom.onChange(invalidate);
   const close = () => {
     cancelAnimationFrame(requested);
     resized.disconnect();
     forgetChanges();
     forgetLayers();
+    forgetZoom();
     frames?.close();
   };
-  return {
-    show, close,
-    age_s: () => pictureAge(painter),
-    place: (event, { clamped = false } = {}) => placeOf(event, canvas, sizeOf(painter), clamped),
-    get size() {
-      return sizeOf(painter) ?? [canvas.clientWidth, canvas.clientHeight];
-    },
-    get pixel() {
-      return 1 / fitted(canvas.clientWidth, canvas.clientHeight, this.size).scale;
-    },
-  };
+  return { show, close, age_s: () => pictureAge(painter), sight: createSight(canvas, zoom, () => sizeOf(painter)) };
 }
 
 function sizeOf({ source, picture }) {
   return source.camera()?.size ?? (picture ? [picture.width, picture.height] : null);
-}
-
-/** How a picture of a size lies within a box: as large as it goes, in the middle. */
-function fitted(width, height, size) {
-  const scale = Math.min(width / size[0], height / size[1]);
-  return { scale, left: (width - scale * size[0]) / 2, top: (height - scale * size[1]) / 2 };
-}
-
-/** Where in the picture somebody points, in camera pixels; null beside it, unless it is to be clamped. */
-function placeOf(event, canvas, size, clamped) {
-  if (!size) return null;
-  const box = canvas.getBoundingClientRect();
-  const { scale, left, top } = fitted(box.width, box.height, size);
-  const u = (event.clientX - box.left - left) / scale;
-  const v = (event.clientY - box.top - top) / scale;
-  const within = (value, most) => Math.min(Math.max(value, 0), most - 1);
-  const inside = u >= 0 && v >= 0 && u < size[0] && v < size[1];
-  return inside || clamped ? { u: within(u, size[0]), v: within(v, size[1]), pixel: 1 / scale } : null;
 }
 
 function pictureAge({ receivedAt }) {
@@ -116,11 +98,12 @@ function fit(canvas) {
 
 function paintScaled(context, painter, [width, height]) {
   const { canvas } = context;
-  const { scale, left, top } = fitted(canvas.width, canvas.height, [width, height]);
+  const { scale, left, top } = placed(painter.zoom.get(), canvas, [width, height]);
   const pixel = (devicePixelRatio || 1) / scale;
   context.setTransform(1, 0, 0, 1, 0, 0);
   context.clearRect(0, 0, canvas.width, canvas.height);
   context.setTransform(scale, 0, 0, scale, left, top);
+  context.imageSmoothingEnabled = scale < PIXEL_SEEN;
   if (painter.picture) context.drawImage(painter.picture, 0, 0, width, height);
   followModel(painter);
   const pen = { context, pixel, picture: painter.picture, size: [width, height], project: painter.project };

@@ -2,10 +2,20 @@
  * What a click into the camera picture means just now, and what else is drawn there. Whoever needs a place in the
  * picture takes the pointer and gives it back; of several the one that took it last has it.
  */
-import { html, useEffect, useRef, useState } from "../view.js";
+import { useEffect, useRef, useState } from "../view.js";
 
-/** {words, press(place), move?(place), release?()}; a place is {u, v, pixel} in camera pixels. A press that answers
-    true has taken hold of something, which follows the keys until Enter lets it go. */
+/**
+ * @typedef {{u: number, v: number, pixel: number, touch?: boolean}} Place in camera pixels; pixel: a CSS pixel in
+ *   them; touch: a finger points at it
+ * @typedef {{
+ *   words: string, press: (place: Place) => unknown, move?: (place: Place) => void, release?: () => void,
+ *   cancel?: () => void, hover?: (place: Place | null) => void, again?: (place: Place) => void,
+ *   key?: (event: KeyboardEvent, place: Place) => boolean,
+ * }} Taker press: one that answers true has taken hold of something, which follows the keys until Enter lets it go;
+ *   cancel: two fingers move the picture, so what the first one began was not meant; again: a double click; key: a key
+ *   at the crosshair that is no arrow, answers whether it meant something
+ */
+/** @type {(() => Taker | null)[]} */
 const takers = [];
 /** What a layer answers that does not want the overlay over it. */
 export const ALONE = "alone";
@@ -63,82 +73,4 @@ export function useTaker() {
   const [, count] = useState(0);
   useEffect(() => onPointingChange(() => count((before) => before + 1)), []);
   return takers.at(-1)?.() ?? null;
-}
-
-const STEPS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
-/** A step of the crosshair with Shift held, px; one without. */
-const LONG_STEP = 10;
-
-/** Arrow keys move a crosshair, Enter presses at it: pointing without a mouse. dragging: ref, what follows it. */
-function keysOf(taker, painter, cross, setCross, dragging) {
-  const enter = (place) => {
-    dragging.current = !dragging.current && taker.press(place) === true;
-    if (!dragging.current) taker.release?.();
-  };
-  return (event) => {
-    if (!taker) return;
-    const step = STEPS[event.key];
-    const { size, pixel } = painter();
-    const at = cross ?? { u: size[0] / 2, v: size[1] / 2 };
-    if (step) {
-      const far = event.shiftKey ? LONG_STEP : 1;
-      const next = { u: within(at.u + far * step[0], size[0]), v: within(at.v + far * step[1], size[1]) };
-      setCross(next);
-      if (dragging.current) taker.move?.({ ...next, pixel });
-    } else if (event.key === "Enter") enter({ ...at, pixel });
-    else return;
-    event.preventDefault();
-  };
-}
-
-const within = (value, size) => Math.min(Math.max(value, 0), size - 1);
-
-/**
- * The canvas of the picture, with mouse, finger and keys.
- * @param props canvas: ref; painter: () => the painter, with `place(event)`, `size` and `pixel`; label
- */
-export function PointedCanvas({ canvas, painter, label }) {
-  const taker = useTaker();
-  const [cross, setCross] = useState(null);
-  const held = useRef(false);
-  const dragging = useRef(false);
-  const leave = () => {
-    if (dragging.current) taker?.release?.();
-    dragging.current = false;
-    setCross(null);
-  };
-  useLayer((pen) => taker && cross && drawCross(pen, cross), [taker?.words, cross]);
-  const press = (event) => {
-    if (!taker || event.button !== 0) return;
-    const place = painter().place(event);
-    if (!place) return;
-    held.current = true;
-    setCross(null);
-    event.target.setPointerCapture(event.pointerId);
-    taker.press(place);
-  };
-  const move = (event) => held.current && taker?.move?.(painter().place(event, { clamped: true }));
-  const release = () => {
-    if (held.current) taker?.release?.();
-    held.current = false;
-  };
-  return html`
-    <canvas ref=${canvas} role="img" aria-label=${label} tabindex=${taker ? 0 : -1} data-pointing=${taker ? "yes" : "no"}
-      onPointerDown=${press} onPointerMove=${move} onPointerUp=${release} onPointerCancel=${release}
-      onKeyDown=${keysOf(taker, painter, cross, setCross, dragging)} onBlur=${leave}></canvas>
-  `;
-}
-
-function drawCross({ context, pixel }, { u, v }) {
-  const arm = 14 * pixel;
-  for (const [colour, width] of [["#10151b", 3.6], ["#ffffff", 1.5]]) {
-    context.beginPath();
-    context.moveTo(u - arm, v);
-    context.lineTo(u + arm, v);
-    context.moveTo(u, v - arm);
-    context.lineTo(u, v + arm);
-    context.strokeStyle = colour;
-    context.lineWidth = width * pixel;
-    context.stroke();
-  }
 }

@@ -1,67 +1,59 @@
-/** Three charts with one cursor: of the last minute of the rig, or of whatever else a source tells. */
-import { html, useEffect, useRef, useState } from "../view.js";
+/** Charts with one cursor: of the last hour of the rig, or of whatever else a source tells. */
+import { useStore } from "../store.js";
 import { quantity } from "../units.js";
+import { html, useEffect, useRef, useState } from "../view.js";
 import { createChart } from "./chart.js";
-import { lastMinute } from "./last_minute.js";
+import { CHARTS } from "./curves.js";
+import { rigSource } from "./rig_source.js";
+import { spanWords } from "./span.js";
+import { Toolbar } from "./toolbar.js";
+import { toggleCurve, useView } from "./view.js";
 
-const DIGITS = { mm: 1, deg: 0, A: 2 };
-const COILS = [["x", "first"], ["y", "second"], ["z", "third"]];
-
-/** curves: column, label, unit, colour token, style; only those with a label, be it empty, are in the legend. */
-export const CHARTS = [
-  {
-    title: "Error", note: "distance from the centre to the target", empty: "Shown once a run is on.",
-    curves: [{ column: "error_mm", label: "error", unit: "mm", colour: "first", fromZero: true }],
-  },
-  {
-    title: "Pose", note: "line estimate · dots measured · dashes reference",
-    curves: [
-      ...tripled("x", "x", "mm", "first"),
-      ...tripled("y", "y", "mm", "second"),
-      { column: "heading_deg", label: "heading", unit: "deg", colour: "third" },
-      { column: "heading_measured_deg", unit: "deg", colour: "third", style: "dots" },
-      { column: "heading_goal_deg", unit: "deg", colour: "third", style: "dashes" },
-    ],
-  },
-  {
-    title: "Currents", note: "line commanded · dots measured",
-    curves: COILS.flatMap(([axis, colour]) => [
-      { column: `current_${axis}_A`, label: axis, unit: "A", colour },
-      { column: `measured_${axis}_A`, unit: "A", colour, style: "dots" },
-    ]),
-  },
-];
-
-function tripled(name, label, unit, colour) {
-  return [
-    { column: `${name}_mm`, label, unit, colour },
-    { column: `${name}_measured_mm`, unit, colour, style: "dots" },
-    { column: `${name}_reference_mm`, unit, colour, style: "dashes" },
-  ];
-}
+const DIGITS = { mm: 1, deg: 0, A: 2, ms: 0 };
 
 export function Charts() {
-  return html`<section class="charts" aria-label="Charts of the last minute">
-    ${CHARTS.map((chart) => html`<${Chart} key=${chart.title} ...${chart} source=${lastMinute} span="over the last 60 seconds" />`)}
-  </section>`;
+  const view = useView();
+  const shown = CHARTS.filter(({ title }) => !view.folded.includes(title));
+  return html`
+    <section class="charts" aria-label="Charts of the last hour" data-charts=${shown.length}>
+      <${Toolbar} />
+      ${shown.map((chart) => html`<${Chart} key=${chart.title} ...${chart} source=${rigSource} span=${spanWords(view)} />`)}
+    </section>
+  `;
 }
 
 /** span: "over the last 60 seconds", in the chart's name for a screen reader. */
 export function Chart({ title, note, curves, empty, source, span }) {
   const box = useRef(null);
-  const [{ values, blank }, show] = useState({ values: [], blank: true });
-  useEffect(() => createChart(box.current, curves, source, (newest, nothing) => show({ values: newest, blank: nothing })), [curves, source]);
+  const chart = useRef(null);
+  const hidden = useStore((state) => state.charts.hidden);
+  const [{ values, blank }, show] = useState({ values: /** @type {(number | null)[]} */ ([]), blank: true });
+  useEffect(() => {
+    chart.current = createChart(box.current, curves, source, (newest, nothing) => show({ values: newest, blank: nothing }));
+    return () => chart.current.close();
+  }, [curves, source]);
+  useEffect(() => chart.current.hide(hidden), [hidden, curves, source]);
   return html`
     <section class="card chart" aria-label=${title}>
       <header class="card-head">
         <h2>${title}</h2>
-        ${curves.map(({ label, unit, colour, style }, index) => label !== undefined && html`
-          <span class="legend" data-colour=${colour} data-style=${style ?? "line"}>${label}<b>${quantity(values[index], unit, DIGITS[unit])}</b></span>
+        ${curves.map((curve, index) => curve.label !== undefined && html`
+          <${Legend} ...${curve} value=${values[index]} isHidden=${hidden.includes(curve.group)} />
         `)}
-        ${note && html`<span class="hint">${note}</span>`}
+        ${note && html`<span class="hint" title=${note}>${note}</span>`}
       </header>
-      <div class="plot" ref=${box} role="img" aria-label=${`${title} ${span}`}></div>
+      <div class="plot" ref=${box} role="img" tabindex="0" aria-label=${`${title} ${span}`}></div>
       ${empty && blank && html`<p class="plot-note">${empty}</p>`}
     </section>
+  `;
+}
+
+/** A curve without words of its own stands beside the one it belongs to. */
+function Legend({ label, group, unit, colour, style, value, isHidden }) {
+  return html`
+    <span class="legend" data-colour=${colour} data-style=${style ?? "line"} data-hidden=${isHidden}>
+      ${label && html`<button class="curve" type="button" aria-pressed=${!isHidden} title=${isHidden ? "Show this curve" : "Hide this curve"} onClick=${() => toggleCurve(group)}>${label}</button>`}
+      <b>${quantity(value, unit, DIGITS[unit])}</b>
+    </span>
   `;
 }

@@ -1,103 +1,63 @@
-/** Keeps the telemetry stream open, feeds ticks and store from it, and loads what the page is made from. */
-import { endIfReplayed } from "../replay/replay.js";
-import { reloadIfInspected } from "../runs/inspected.js";
-import { hearOfRun, loadRuns } from "../runs/listing.js";
+/** Keeps the telemetry stream open and says at any time how far what is shown can be believed. */
 import { get, say, set } from "../store.js";
-import { hearOfStudy, loadStudies } from "../studies/listing.js";
-import { hasUnsentEdits, showRunPath } from "./actions.js";
-import { read } from "./rest.js";
+import { load } from "./loading.js";
+import { receive } from "./messages.js";
+import { giveUpWaiting } from "./rest.js";
 import { keepOpen } from "./socket.js";
-import { clearTrail, live, publish } from "./ticks.js";
+import { live } from "./ticks.js";
 
-/** No telemetry for this long on an open connection counts as a lost one, ms. */
-const SILENCE_MS = 2000;
-/** Text follows the ticks at this pace: faster cannot be read, ms. */
-const TEXT_MS = 125;
-const EVENTS_KEPT = 200;
+/** Ticks come every 33 ms; without one for this long what is shown is old, ms... */
+const SILENT_MS = 700;
+/** ...and for this long, an open connection counts as a lost one, ms. */
+const LOST_MS = 2000;
+const LOOK_MS = 250;
 
-let lastText = 0;
+const OPEN = { status: /** @type {const} */ ("open"), cause: "", retryAt: null, late_ms: 0 };
+
 let openedAt = 0;
+
+/** @typedef {{retry: () => void, abandon: (cause: string) => void}} Line */
 
 export function connect() {
   const socket = keepOpen("/api/v1/telemetry?rate_Hz=30", { open: () => opened(socket), message: receive, lost });
-  setInterval(() => watch(socket), 250);
+  const look = () => watch(socket);
+  setInterval(look, LOOK_MS);
   addEventListener("online", () => socket.retry());
+  // A page that was asleep looks before it shows anything.
+  document.addEventListener("visibilitychange", look);
+  document.addEventListener("resume", look);
+  addEventListener("pageshow", look);
   return socket;
 }
 
+/** @param {Line} socket */
 async function opened(socket) {
   openedAt = performance.now();
-  set({ connection: { status: "open", cause: "", retryAt: null } });
+  set({ connection: OPEN });
   try {
     await load();
-  } catch (problem) {
+  } catch (caught) {
+    const problem = /** @type {import("./rest.js").Problem} */ (caught);
     if (problem.status === 0) socket.abandon("the server does not answer");
     else say(`The page could not load everything: ${problem.message}`);
   }
 }
 
+/** @param {string} cause @param {number} retryAt performance.now() of the next try, ms */
 function lost(cause, retryAt) {
-  set({ connection: { status: "lost", cause, retryAt } });
+  giveUpWaiting();
+  set({ connection: { status: "lost", cause, retryAt, late_ms: 0 } });
 }
 
+const silence = () => performance.now() - Math.max(live.receivedAt, openedAt);
+
+/** @param {Line} socket */
 function watch(socket) {
-  if (get().connection.status !== "open") return;
-  const silence = performance.now() - Math.max(live.receivedAt, openedAt);
-  if (silence > SILENCE_MS) socket.abandon(`no telemetry for ${(silence / 1000).toFixed(1)} s`);
+  const { connection } = get();
+  if (connection.status !== "open" && connection.status !== "silent") return;
+  const silent = silence();
+  const cause = `no telemetry for ${(silent / 1000).toFixed(1)} s`;
+  if (silent > LOST_MS) socket.abandon(cause);
+  else if (silent > SILENT_MS) set({ connection: { ...connection, status: "silent", cause } });
+  else if (connection.status === "silent") set({ connection: OPEN });
 }
-
-async function load() {
-  loadRuns();
-  loadStudies();
-  const [rig, camera, controllers, trajectories, gaitSchema, selection, newest] = await Promise.all(
-    ["/rig", "/camera", "/controllers", "/trajectories", "/gait", "/selection", "/runs?limit=1"].map(read),
-  );
-  set({ rig, camera, controllers, trajectories, gaitSchema, selection });
-  showRunPath(newest.runs.find(({ state }) => state === "running")?.trajectory);
-}
-
-let rigAsked = 0;
-
-/**
- * The rig's values, its file and its camera, which change when somebody changes the rig file. Each change is told
- * twice within a moment; an older answer never replaces a newer one.
- */
-async function loadRig() {
-  const own = (rigAsked += 1);
-  const [rig, camera] = await Promise.all(["/rig", "/camera"].map(read));
-  if (own === rigAsked) set({ rig, camera });
-}
-
-function receive(data) {
-  const message = JSON.parse(data);
-  handlers[message.type]?.(message);
-}
-
-const handlers = {
-  tick(tick) {
-    publish(tick);
-    const shown = get().tick;
-    const now = performance.now();
-    if (shown && shown.rig === tick.rig && shown.reason === tick.reason && now - lastText < TEXT_MS) return;
-    lastText = now;
-    set({ tick });
-  },
-  run(message) {
-    const { event, run } = message;
-    if (event === "started") clearTrail();
-    if (event === "started" || event === "changed") showRunPath(run.trajectory);
-    // A run that ends is told by the state that it has ended in; what else happens to runs concerns no path.
-    else if (event === run?.state) showRunPath(null);
-    hearOfRun(message);
-    reloadIfInspected(message);
-    endIfReplayed(message);
-  },
-  study: hearOfStudy,
-  event(event) {
-    set({ events: [event, ...get().events].slice(0, EVENTS_KEPT) });
-  },
-  rig(message) {
-    if (message.selection && !hasUnsentEdits()) set({ selection: message.selection });
-    if (message.settings || message.file) loadRig().catch((problem) => say(problem.message));
-  },
-};

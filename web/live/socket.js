@@ -4,8 +4,10 @@ const FIRST_DELAY_MS = 400;
 const LONGEST_DELAY_MS = 8000;
 const GROWTH = 1.7;
 
+/** @param {string} path */
 const url = (path) => `${location.protocol === "https:" ? "wss" : "ws"}://${location.host}${path}`;
 
+/** @param {CloseEvent} event @returns {string} in words */
 function causeOf(event) {
   if (!navigator.onLine) return "this device is offline";
   if (event.reason) return event.reason;
@@ -20,9 +22,10 @@ function causeOf(event) {
  * @returns {{close: () => void, retry: () => void, abandon: (cause: string) => void}}
  */
 export function keepOpen(path, handlers) {
+  /** @type {WebSocket | null} */
   let socket = null;
   let delay = FIRST_DELAY_MS;
-  let timer = 0;
+  let timer = /** @type {any} */ (0);
   let closed = false;
 
   function connect() {
@@ -39,6 +42,7 @@ export function keepOpen(path, handlers) {
     own.onclose = (event) => own === socket && lose(causeOf(event), event.code);
   }
 
+  /** @param {string} cause @param {number | null} code */
   function lose(cause, code = null) {
     socket = null;
     if (closed) return;
@@ -48,7 +52,7 @@ export function keepOpen(path, handlers) {
     handlers.lost?.(cause, performance.now() + wait, code);
   }
 
-  // A dead network can keep a socket in its closing handshake for minutes: it is let go at once.
+  /** A dead network can keep a socket in its closing handshake for minutes: it is let go at once. @param {string} cause */
   function abandon(cause) {
     if (socket === null) return;
     const old = socket;

@@ -1,11 +1,15 @@
 /** The charts while a recording is shown: the whole run or a part of it, with the time of the replay in each. */
-import { Chart, CHARTS } from "../charts/charts.js";
+import { Chart } from "../charts/charts.js";
+import { CHARTS } from "../charts/curves.js";
 import { html, useEffect, useMemo } from "../view.js";
 import { lookCloser } from "./closer.js";
 import { setLoop, zoomOut } from "./player.js";
 import { useReplay } from "./replay.js";
 import { Badge, Line, stamp } from "./signs.js";
 import { wholeRun } from "./timeline.js";
+
+/** What a recording has, too. */
+const RECORDED = CHARTS.filter(({ liveOnly }) => !liveOnly);
 
 export function ReplayCharts() {
   const recorded = useReplay((replay) => replay.runs) ?? [];
@@ -14,7 +18,7 @@ export function ReplayCharts() {
   const zoom = useReplay((replay) => replay.zoom);
   const closer = useReplay((replay) => replay.closer);
   const source = useMemo(() => wholeRun(runs), [runs]);
-  const charts = useMemo(() => (runs.length > 1 ? CHARTS.map(compared) : CHARTS), [runs.length > 1]);
+  const charts = useMemo(() => (runs.length > 1 ? RECORDED.map(compared) : RECORDED), [runs.length > 1]);
   useEffect(source.changed, [zoom, closer]);
   useEffect(() => void lookCloser(), [zoom]);
   if (runs.length === 0) return html`<section class="charts" aria-label="Charts of the recording"></section>`;

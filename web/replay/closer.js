@@ -1,6 +1,6 @@
 /** The curves of a part of a run, closer than the whole run's: asked for when the charts look at little of it. */
 import { Problem, read } from "../live/rest.js";
-import { get, set } from "../store.js";
+import { amend, get } from "../store.js";
 import { columnsOf, indexAt } from "./recording.js";
 
 /** With fewer values than this a chart shows corners that are not there. */
@@ -15,7 +15,7 @@ export async function lookCloser() {
   if (!zoom || replay.runs.every((run) => isFine(run, zoom))) return;
   try {
     const closer = await Promise.all(replay.runs.map(({ id }) => load(id, zoom)));
-    if (get().replay?.zoom === zoom) set({ replay: { ...get().replay, closer } });
+    if (get().replay?.zoom === zoom) amend("replay", { closer });
   } catch (problem) {
     // The whole run's curves stay: coarse, but true.
     if (!(problem instanceof Problem)) throw problem;
@@ -30,7 +30,7 @@ function isFine({ series, ticks }, [from, to]) {
 
 async function load(id, [from, to]) {
   const margin = MARGIN * (to - from);
-  const query = new URLSearchParams({ start_s: Math.max(0, from - margin), end_s: to + margin });
+  const query = new URLSearchParams({ start_s: String(Math.max(0, from - margin)), end_s: String(to + margin) });
   const { series } = await read(`/runs/${encodeURIComponent(id)}/series?${query}`);
   return columnsOf(series);
 }

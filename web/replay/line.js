@@ -1,6 +1,6 @@
 /** Asks the server what the recordings hold at the time that is shown: one question at a time, the newest only. */
 import { keepOpen } from "../live/socket.js";
-import { get, say, set } from "../store.js";
+import { amend, say } from "../store.js";
 import { now_s, onTime, waitWhile } from "./player.js";
 
 /** Questions are at least so far apart: a screen cannot show more, ms. */
@@ -23,10 +23,14 @@ const outOfSight = new Set();
 /** Index of a run -> its newest picture, which the server does not send twice, and whether it is the one shown. */
 const pictures = new Map();
 
+/** @type {{close: () => void} | null} */
 let socket = null;
+/** @type {(() => void) | null} */
 let forgetTime = null;
+/** @type {((text: string) => void) | null} */
 let send = null;
 let waiting = false;
+/** @type {{at_s: number | null, frame: boolean | null, at: number}} */
 let asked = { at_s: null, frame: null, at: -Infinity };
 let timer = 0;
 
@@ -82,7 +86,8 @@ export function closeLine() {
   Object.assign(answer, { at_s: 0, ticks: [], pictures: null });
 }
 
-const change = (part) => get().replay && set({ replay: { ...get().replay, ...part } });
+/** @param {Partial<import("../types").Replay>} part */
+const change = (part) => amend("replay", part);
 
 function lost(cause) {
   send = null;

@@ -6,12 +6,12 @@ import { seek } from "./player.js";
 import { useReplay } from "./replay.js";
 import { Badge, difference, Line, stamp } from "./signs.js";
 
-/** [title, unit, digits, value of a run] */
+/** @type {[title: string, unit: string, digits: number, of: (run: any) => number | undefined][]} */
 const FIGURES = [
   ["Mean error", "mm", 2, ({ metrics }) => metrics?.mean_error_mm],
   ["Largest error", "mm", 2, ({ metrics }) => metrics?.max_error_mm],
   ["RMS error", "mm", 2, ({ metrics }) => metrics?.rms_error_mm],
-  ["ME (mean / length)", "", 3, ({ metrics }) => metrics?.normalized_mean_error],
+  ["ME", "", 3, ({ metrics }) => metrics?.normalized_mean_error],
   ["Error at the end", "mm", 2, ({ metrics }) => metrics?.end_error_mm],
   ["Travelled", "mm", 0, ({ metrics }) => metrics?.travelled_mm],
   ["Duration", "s", 1, ({ metrics }) => metrics?.duration_s],

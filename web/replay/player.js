@@ -1,5 +1,5 @@
 /** The clock of a replay: what time of the recording is shown, and how it goes on. */
-import { get, set } from "../store.js";
+import { amend, get } from "../store.js";
 import { useEffect, useState } from "../view.js";
 
 export const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 5, 10];
@@ -30,7 +30,8 @@ export function onTime(listener) {
   return () => listeners.delete(listener);
 }
 
-const change = (part) => set({ replay: { ...get().replay, ...part } });
+/** @param {Partial<import("../types").Replay>} part */
+const change = (part) => amend("replay", part);
 const tell = () => listeners.forEach((listener) => listener(time));
 const duration = () => get().replay?.duration_s ?? 0;
 
@@ -108,12 +109,12 @@ function advance(seconds, { loop }) {
 
 /** The range that is played again and again begins, or ends, here. */
 export function loopFromHere() {
-  const [, end] = get().replay.loop ?? [0, duration()];
+  const [, end] = get().replay?.loop ?? [0, duration()];
   setLoop(time, end > time ? end : duration());
 }
 
 export function loopToHere() {
-  const [start] = get().replay.loop ?? [0];
+  const [start] = get().replay?.loop ?? [0];
   setLoop(start < time ? start : 0, time);
 }
 
@@ -127,6 +128,7 @@ export const endLoop = () => change({ loop: null });
 
 /** The charts show this range alone. */
 export function zoomTo(from, to) {
+  /** @type {[number, number]} */
   const range = [Math.max(0, from), Math.min(duration(), to)];
   if (range[1] - range[0] >= SHORTEST_RANGE) change({ zoom: range, closer: null });
 }

@@ -47,6 +47,7 @@ export function columnsOf(series) {
 
 /** The same angles without jumps of a turn. */
 function unwound(angles) {
+  /** @type {number | null} */
   let last = null;
   return angles.map((angle) => {
     if (typeof angle !== "number") return null;

@@ -8,7 +8,10 @@ import { closeLine, openLine } from "./line.js";
 import { pause, play, restart } from "./player.js";
 import { recordingOf } from "./recording.js";
 
-/** What the store knows of an open replay. */
+/**
+ * What the store knows of an open replay.
+ * @type {import("../types").Replay}
+ */
 const OPENING = {
   ids: [],
   /** "loading" | "open" | "lost", with the cause in words; what the server calls this replay, for the scene. */

@@ -1,7 +1,7 @@
 /** Looks at the pictures of a run again: with another tracker, filter or camera, or for another controller. */
 import { Problem } from "../live/rest.js";
-import { Field, SchemaForm } from "../run/form.js";
-import { defaultsOf } from "../run/schema.js";
+import { Field, SchemaForm } from "../forms/form.js";
+import { defaultsOf } from "../forms/schema.js";
 import { Ask } from "../ask.js";
 import { useStore } from "../store.js";
 import { fixed } from "../units.js";
@@ -120,7 +120,7 @@ function withValue(section, changed, dotted, value) {
   return { ...changed, [name]: span };
 }
 
-/** [title, digits, factor, unit, name in the comparison] */
+/** @type {[title: string, digits: number, factor: number, unit: string, name: string][]} */
 const THEN_AND_NOW = [
   ["Mean error", 3, 1, "mm", "mean_error_mm"],
   ["Robot known", 1, 100, "%", "known_share"],

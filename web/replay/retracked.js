@@ -1,6 +1,6 @@
 /** A second look at the pictures of the run that is shown: asked for, watched, and put beside the first in the charts. */
 import { post, Problem, read, remove } from "../live/rest.js";
-import { get, set } from "../store.js";
+import { amend, get } from "../store.js";
 import { columnsOf } from "./recording.js";
 
 /** From one question how far it is to the next, ms. */
@@ -8,11 +8,14 @@ const PERIOD_MS = 300;
 
 const pathOf = (id) => `/runs/${encodeURIComponent(id)}/retrack`;
 
-const isShown = (id) => get().replay?.ids.length === 1 && get().replay.ids[0] === id;
+function isShown(id) {
+  const ids = get().replay?.ids ?? [];
+  return ids.length === 1 && ids[0] === id;
+}
 
 /** {stage: "working" | "done" | "failed" | "cancelled", progress, reason, comparison, series: columns of the charts} */
 function tell(id, second) {
-  if (isShown(id)) set({ replay: { ...get().replay, second } });
+  if (isShown(id)) amend("replay", { second });
 }
 
 /** What is known of an earlier second look at this run. */

@@ -1,5 +1,5 @@
 /** What the charts draw of recorded runs: each on the time since its own start, with the time of the replay. */
-import uPlot from "/static/vendor/uplot/uPlot.esm.js";
+import uPlot from "../vendor/uplot/uPlot.mjs";
 import { get } from "../store.js";
 import { clock } from "../units.js";
 import { now_s, onTextTime, onTime, seek, zoomOut, zoomTo } from "./player.js";
@@ -21,7 +21,7 @@ export function wholeRun(runs) {
   return {
     columns: (curves) => columnsOf(runs, curves),
     range: () => shownRange(),
-    valuesAt: ([times, ...columns], cursor) => columns.map((values) => lastBefore(values, cursor ?? indexAt(times, now_s()))),
+    valuesAt: ([times, ...columns], pointed) => columns.map((values) => lastBefore(values, indexAt(times, pointed ?? now_s()))),
     onChange(listener) {
       listeners.add(listener);
       return () => listeners.delete(listener);

@@ -7,8 +7,12 @@ import { html } from "../view.js";
 const CONTROL_TICK_S = 0.1;
 const DEFAULT_WORKSPACE_MM = 120;
 
-/** How long one pass takes by the gait's time law, s; a robot that is waited for takes longer. */
-function passTime({ length_mm, duration_s }, { time_law, path_step_s, speed_mm_s, acceleration_mm_s2 }) {
+/**
+ * How long one pass takes by the gait's time law, s; a robot that is waited for takes longer.
+ * @param {{length_mm: number, duration_s: number}} path @param {Record<string, any>} gait
+ */
+export function passTime({ length_mm, duration_s }, gait) {
+  const { time_law, path_step_s, speed_mm_s, acceleration_mm_s2 } = gait;
   if (time_law === "path_step") return (duration_s * CONTROL_TICK_S) / path_step_s;
   if (time_law !== "trapezoidal") return length_mm / speed_mm_s;
   const peak = Math.min(speed_mm_s, Math.sqrt(acceleration_mm_s2 * length_mm));
@@ -17,7 +21,7 @@ function passTime({ length_mm, duration_s }, { time_law, path_step_s, speed_mm_s
 
 export function PathPicture() {
   const path = useStore((state) => state.path);
-  const gait = useStore((state) => state.selection.gait);
+  const gait = useStore((state) => /** @type {any} */ (state.selection?.gait));
   const side = useStore((state) => state.rig?.limits?.workspace_mm ?? DEFAULT_WORKSPACE_MM);
   if (!path) return html`<p class="hint path-missing">No path for these values.</p>`;
   const half = side / 2;

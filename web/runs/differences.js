@@ -10,7 +10,11 @@ export function flattened(value, prefix = "") {
   );
 }
 
-/** @param now as the server answers: `file` is about the rig file on the disk, not a setting. @returns [{name, then, now}] */
+/**
+ * @param then as it was kept
+ * @param {Record<string, any>} now as the server answers: `file` is about the rig file on the disk, not a setting
+ * @returns {{name: string, then: any, now: any}[]}
+ */
 export function differencesOf(then, { file, ...now }) {
   const [before, after] = [flattened(then), flattened(now)];
   return Object.keys({ ...after, ...before })

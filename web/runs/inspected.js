@@ -1,6 +1,6 @@
 /** The run whose details are open, and what is done with it; what went wrong stays beside the buttons. */
 import { patch, post, Problem, read, remove } from "../live/rest.js";
-import { get, say, set, useStore } from "../store.js";
+import { amend, get, say, set, useStore } from "../store.js";
 import { dropRuns, takeIn } from "./listing.js";
 
 /** A run that has just ended gets its last figures within this time, ms. */
@@ -9,7 +9,8 @@ const RELOAD_PAUSE_MS = 300;
 const NOTHING = { run: null, error: "", working: "", restarted: null };
 
 const now = () => get().inspected;
-const change = (part) => now() && set({ inspected: { ...now(), ...part } });
+/** @param {Partial<import("../types").Inspected>} part */
+const change = (part) => amend("inspected", part);
 
 /** The details with the newest that the list knows of the run; null while none is open. */
 export const useInspected = () =>
@@ -60,7 +61,7 @@ export function reloadIfInspected({ event, run }) {
 
 /** Does one thing with the open run and says so meanwhile. @returns the answer, or null when it was refused */
 async function doing(words, call) {
-  if (!now() || now().working) return null;
+  if (now()?.working !== "") return null;
   change({ working: words, error: "" });
   try {
     return (await call()) ?? true;
@@ -77,7 +78,7 @@ async function doing(words, call) {
 export async function edit(id, part, more = {}) {
   const run = await patch(`/runs/${encodeURIComponent(id)}`, part, more);
   takeIn({ id, ...part, ...run });
-  if (now()?.id === id) change({ run: { ...now().run, ...part, ...run } });
+  if (now()?.id === id) change({ run: { ...now()?.run, ...part, ...run } });
 }
 
 export const pin = ({ id, pinned }) => doing(pinned ? "Unpinning" : "Pinning", () => edit(id, { pinned: !pinned }));

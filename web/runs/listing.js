@@ -35,7 +35,7 @@ export const isFiltered = (filter) => Object.values(filter).some(Boolean);
 
 function address(cursor = null) {
   const asked = Object.entries(now().filter).filter(([, value]) => value !== "");
-  const query = new URLSearchParams([...asked, ["limit", PAGE], ...(cursor ? [["cursor", cursor]] : [])]);
+  const query = new URLSearchParams([...asked, ["limit", String(PAGE)], ...(cursor ? [["cursor", cursor]] : [])]);
   return `/runs?${query}`;
 }
 
@@ -111,7 +111,7 @@ const isUnfinished = (run) => run.state !== "running" && run.recording?.state ==
 let looks = 0;
 
 function lookAgainIfUnfinished() {
-  if (!now().runs.some(isUnfinished)) return;
+  if (!now().runs?.some(isUnfinished)) return;
   looks += 1;
   if (looks <= UNFINISHED_LOOKS) refreshSoon(UNFINISHED_PAUSE_MS);
 }

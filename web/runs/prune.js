@@ -64,6 +64,7 @@ function Entry({ title, unit, value, onInput, first = false }) {
 
 /** Asks what would go whenever the wish changes; `go` deletes exactly by the wish that was shown. */
 function usePrune(wish, close) {
+  /** @type {[{found: any, error: string, working: boolean}, (state: any) => void]} */
   const [state, setState] = useState({ found: null, error: "", working: false });
   const newest = useRef(0);
   const ask = async (dry) => {

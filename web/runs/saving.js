@@ -10,7 +10,10 @@ const AT_REST = { draft: null, standing: { word: "" } };
 /** One field of one run: `tell` hears of {draft: what the server has not got yet, or null, standing}. */
 function createSaver(id, name, tell) {
   let state = AT_REST;
-  /** {next, before}: what is to be sent, and what Undo goes back to; undefined: it is an Undo itself. */
+  /**
+   * What is to be sent, and what Undo goes back to; undefined: it is an Undo itself.
+   * @type {{next: any, before: any} | null}
+   */
   let waiting = null;
   let before;
   let sending = false;

@@ -7,7 +7,10 @@ import { NOT_PINNED, Pin, PINNED } from "./pin.js";
 import { Sparkline } from "./sparkline.js";
 import { bytes, exactly, lasted, nameOf, partName, when } from "./words.js";
 
-/** [name, title, unit, cell]; the name says where CSS leaves it out when there is little room. */
+/**
+ * The name says where CSS leaves it out when there is little room.
+ * @type {[name: string, title: string, unit: string, cell: (run: any, open: boolean) => any][]}
+ */
 const COLUMNS = [
   ["started", "Started", "", (run) => html`<time datetime=${run.started_at} title=${exactly(run.started_at)}>${when(run.started_at)}</time>`],
   ["name", "Run", "", (run, open) => html`<${Name} run=${run} open=${open} />`],

@@ -19,13 +19,16 @@ export function bytes(count) {
 /** "1 run", "12 runs". */
 export const counted = (count, noun) => `${count.toLocaleString("en")} ${noun}${count === 1 ? "" : "s"}`;
 
+/** @type {Intl.DateTimeFormatOptions} */
 const DAY = { day: "numeric", month: "short" };
+/** @type {Intl.DateTimeFormatOptions} */
 const TIME = { hour: "2-digit", minute: "2-digit", hour12: false };
 
 /** "23 Nov 14:05", with the year when it is another one; in this computer's time zone. */
 export function when(text, now = new Date()) {
   const time = new Date(text ?? "");
   if (Number.isNaN(time.getTime())) return "–";
+  /** @type {Intl.DateTimeFormatOptions} */
   const day = time.getFullYear() === now.getFullYear() ? DAY : { ...DAY, year: "numeric" };
   return `${time.toLocaleDateString("en-GB", day)} ${time.toLocaleTimeString("en-GB", TIME)}`;
 }

@@ -1,10 +1,10 @@
 /** What a study may vary, made from the JSON schemas of controllers, trajectories, gait and plants. Pure. */
-import { fieldsOf, rangeOf } from "../run/schema.js";
+import { fieldsOf, rangeOf } from "../forms/schema.js";
 
 const VARIED = ["number", "choice", "switch"];
 
 /**
- * @param known {controllers, trajectories, plants, gaitSchema}
+ * @param {Pick<import("../types").State, "controllers" | "trajectories" | "plants" | "gaitSchema">} known
  * @param rest the definition's fixed part: controller, trajectory, plant, on
  * @returns [{title, axes: [{name, title, unit, kind, choices, initial, range, low, high, integer, description}]}]
  */

@@ -2,8 +2,9 @@
  * The study that is being made: its draft, and what the server says of it (how many runs, how long, what is wrong).
  * Asked whenever typing pauses; a late answer never replaces a newer one.
  */
+import { download } from "../download.js";
 import { post, Problem, read } from "../live/rest.js";
-import { get, say, set, useStore } from "../store.js";
+import { amend, get, say, set, useStore } from "../store.js";
 import { definitionOf, draftOf, withField } from "./draft.js";
 import { change as changeListing, loadStudies, openStudy } from "./listing.js";
 
@@ -18,18 +19,21 @@ const NOTHING = {
 
 export const useDraft = (select) => useStore((state) => (state.composing ? select(state.composing) : null));
 const now = () => get().composing;
-const change = (part) => now() && set({ composing: { ...now(), ...part } });
+/** @param {Partial<import("../types").Composing>} part */
+const change = (part) => amend("composing", part);
 
-/** A study of the page's own selection: what varies is still to be said. */
-function fresh() {
-  const { controller, trajectory, gait } = get().selection;
+/** A study of a selection, the page's own: what varies is still to be said. */
+function fresh({ controller, trajectory, gait }) {
   return { name: "New study", on: "batch", design: "grid", repeats: 3, order: "blocked", seed: 1, controller, trajectory, gait, plant: { name: "slip" }, axes: [{ of: "gait.tilt_deg", values: [20, 25, 30] }] };
 }
 
 /** Opens the form, empty or with a definition to begin with. */
 export async function compose(definition = null) {
+  const { selection } = get();
+  const wanted = definition ?? (selection && fresh(selection));
+  if (wanted === null) return;
   changeListing({ open: null, study: null });
-  begin(definition ?? fresh());
+  begin(wanted);
   if (get().plants.length === 0) await loadPlants();
 }
 
@@ -62,19 +66,20 @@ function edit(part) {
   typing = setTimeout(ask, TYPING_PAUSE_MS);
 }
 
-export const setField = (path, value) => edit({ rest: withField(now().rest, path, value) });
-export const setFields = (part) => edit({ rest: { ...now().rest, ...part } });
+export const setField = (path, value) => edit({ rest: withField(now()?.rest, path, value) });
+export const setFields = (part) => edit({ rest: { ...now()?.rest, ...part } });
 export const setAxes = (axes) => edit({ axes });
 
 /** What the page has selected now, in place of what the form began with. */
 export const takeSelection = () => setFields(get().selection);
 
 async function ask() {
-  if (!now()) return;
+  const draft = now();
+  if (!draft) return;
   const own = (asked += 1);
   change({ asking: true });
   try {
-    const answer = await post("/studies/preview", { definition: definitionOf(now()) });
+    const answer = await post("/studies/preview", { definition: definitionOf(draft) });
     if (own === asked) change({ preview: answer, problems: byField(answer.problems), error: "", asking: false });
   } catch (problem) {
     if (!(problem instanceof Problem)) throw problem;
@@ -91,10 +96,11 @@ function byField(problems) {
 
 /** Makes the study and begins it. consent: to current through the coils of a real rig. */
 export async function start(consent = false) {
-  if (!now() || now().starting) return;
+  const draft = now();
+  if (!draft || draft.starting) return;
   change({ starting: true, error: "" });
   try {
-    const study = await post("/studies", { definition: definitionOf(now()), consent });
+    const study = await post("/studies", { definition: definitionOf(draft), consent });
     closeForm();
     await Promise.all([openStudy(study.id), loadStudies()]);
   } catch (problem) {
@@ -117,11 +123,10 @@ export async function takeFile(file) {
 
 /** The form's definition as a file to keep. */
 export function saveFile() {
-  const { preview, rest } = now();
-  const address = URL.createObjectURL(new Blob([preview.toml], { type: "application/toml" }));
-  const link = Object.assign(document.createElement("a"), { href: address, download: `${fileName(rest.name)}.toml` });
-  link.click();
-  URL.revokeObjectURL(address);
+  const draft = now();
+  if (!draft?.preview) return;
+  const { preview, rest } = draft;
+  download(`${fileName(rest.name)}.toml`, preview.toml, "application/toml");
 }
 
 const fileName = (name) => (name ?? "").trim().toLowerCase().replace(/[^a-z0-9]+/g, "-").replace(/^-|-$/g, "") || "study";

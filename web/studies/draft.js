@@ -11,7 +11,7 @@ export const RANGED = ["latin", "tune"];
 
 const OMITTED = undefined;
 
-/** @returns {rest, axes: [{of, how: "values" | "range", values, from, to, step}]}; numbers as typed */
+/** @returns {import("../types").Draft} each axis {of, how: "values" | "range", values, from, to, step}; numbers as typed */
 export function draftOf(definition) {
   const { axes = [], sets = [], ...rest } = definition;
   const rows = rest.design === "list" ? columnsOf(sets) : axes.map(rowOf);
@@ -62,8 +62,9 @@ export const valuesOf = (typed) => typed.split(/[\s,;]+/).map(numberOf).filter((
 export const textOfValues = (values) => values.map(String).join(", ");
 
 /** Sets one field of the definition's fixed part by its path, such as ["stop", "hours"]; undefined takes it out. */
-export function withField(rest, [name, ...deeper], value) {
-  const next = deeper.length > 0 ? withField(rest[name] ?? {}, deeper, value) : value;
+export function withField(rest, path, value) {
+  const [name, ...deeper] = path;
+  const next = deeper.length > 0 ? withField(rest?.[name], deeper, value) : value;
   return dropEmpty({ ...rest, [name]: next });
 }
 

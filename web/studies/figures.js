@@ -14,6 +14,7 @@ import { axisTitle, METRICS, metricOf, metricTitle, valueText, valueWithUnit } f
 const KINDS = [["map", "Map"], ["lines", "Lines"], ["table", "Table"]];
 
 export function Figures({ study }) {
+  /** @type {[any, (view: any) => void]} kind: "map", "lines", "table", or null while nobody has chosen */
   const [view, setView] = useState({ kind: null, across: null, down: null, fixed: {} });
   const turn = (part) => setView({ ...view, ...part });
   const layout = layoutOf(study, view);

@@ -1,5 +1,6 @@
 /** Two axes as a map of cells: a table, so that it can be read without its colours and by a screen reader. */
 import { fixed } from "../units.js";
+import { Sideways } from "../sideways.js";
 import { html } from "../view.js";
 import { setAt } from "./projection.js";
 import { colourAt, inkAt } from "./scale.js";
@@ -10,7 +11,7 @@ export function HeatMap({ sets, layout, scale, metric, caption, best }) {
   const { across, down } = layout;
   const rows = down?.values ?? [null];
   return html`
-    <div class="heat-scroll">
+    <${Sideways} name="heat-scroll">
       <table class="heat">
         <caption>${caption}</caption>
         <thead>
@@ -26,7 +27,7 @@ export function HeatMap({ sets, layout, scale, metric, caption, best }) {
           `)}
         </tbody>
       </table>
-    </div>
+    <//>
   `;
 }
 

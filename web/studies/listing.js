@@ -19,6 +19,9 @@ const EMPTY = {
 
 export const now = () => get().studies ?? EMPTY;
 export const change = (part) => set({ studies: { ...now(), ...part } });
+/** A study has the rig for itself: its runs are changed by nobody. */
+export const isOccupied = (state) => (state.studies?.studies ?? []).some(({ on, state: standing }) => on === "rig" && standing === "running");
+
 export const useStudies = (select) => useStore((state) => select(state.studies ?? EMPTY));
 
 const path = (id) => `/studies/${encodeURIComponent(id)}`;

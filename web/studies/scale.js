@@ -26,7 +26,10 @@ export function inkAt(share) {
   return 0.2126 * red + 0.7152 * green + 0.0722 * blue > BLACK_ABOVE ? "#000000" : "#ffffff";
 }
 
-/** @returns {low, high, share(value)}: where a value stands between the least and the largest of them; null of none */
+/**
+ * @returns {{low: number, high: number, share: (value: number) => number} | null} where a value stands between the least
+ *          and the largest of them; null of none
+ */
 export function scaleOf(values) {
   const known = values.filter(Number.isFinite);
   if (known.length === 0) return null;

@@ -14,20 +14,25 @@ export function Scatter({ sets, layout, scale, metric, caption, best, surface })
   const [place, width] = useWidth();
   const { across, down } = layout;
   const x = alongAxis(across, [MARGIN.left, width - MARGIN.right], surface?.marks[0]);
-  const y = down ? alongAxis(down, [HEIGHT - MARGIN.bottom, MARGIN.top], surface?.marks[1]) : () => HEIGHT / 2;
+  const y = down ? alongAxis(down, [HEIGHT - MARGIN.bottom, MARGIN.top], surface?.marks[1]) : Object.assign(() => HEIGHT / 2, { ticks: [] });
   return html`
     <figure class="scatter" ref=${place}>
       ${caption && html`<figcaption>${caption}</figcaption>`}
       <svg width=${width} height=${HEIGHT} role="img" aria-label=${`${metricTitle(metric)} of each set, by ${across.title.toLowerCase()}${down ? ` and ${down.title.toLowerCase()}` : ""}; the table of sets has the numbers`}>
         ${surface && scale && html`<${Surface} surface=${surface} x=${x} y=${y} scale=${scale} />`}
         <${Axes} x=${x} y=${y} width=${width} across=${across} down=${down} />
-        ${sets.map((set) => html`<${Dot} key=${set.set} set=${set} x=${x(set.values[across.name])} y=${down ? y(set.values[down.name]) : y()} scale=${scale} metric=${metric} axes=${layout.axes} best=${set.set === best} />`)}
+        ${sets.map((set) => html`<${Dot} key=${set.set} set=${set} x=${x(set.values[across.name])} y=${y(down && set.values[down.name])} scale=${scale} metric=${metric} axes=${layout.axes} best=${set.set === best} />`)}
       </svg>
     </figure>
   `;
 }
 
-/** marks: what else has to have its place along it. */
+/**
+ * @param {import("../types").Axis} axis
+ * @param {number[]} ends px
+ * @param {number[]} [marks] what else has to have its place along it
+ * @returns {((value: any) => number) & {ticks: any[]}}
+ */
 function alongAxis(axis, ends, marks = []) {
   const { values } = axis;
   if (!isNumeric(axis)) {
@@ -45,7 +50,7 @@ function Axes({ x, y, width, across, down }) {
   return html`
     <g class="frame">
       ${x.ticks.map((value) => html`<path d=${`M${x(value)} ${foot}v4`} /><text x=${x(value)} y=${foot + 16} text-anchor="middle">${valueText(value)}</text>`)}
-      ${(y.ticks ?? []).map((value) => html`<path d=${`M${MARGIN.left} ${y(value)}h-4`} /><text x=${MARGIN.left - 7} y=${y(value)} text-anchor="end" dominant-baseline="central">${valueText(value)}</text>`)}
+      ${y.ticks.map((value) => html`<path d=${`M${MARGIN.left} ${y(value)}h-4`} /><text x=${MARGIN.left - 7} y=${y(value)} text-anchor="end" dominant-baseline="central">${valueText(value)}</text>`)}
       <path d=${`M${MARGIN.left} ${MARGIN.top}V${foot}H${width - MARGIN.right}`} />
       <text x=${middle} y=${HEIGHT - 6} text-anchor="middle">${axisTitle(across)}</text>
       ${down && html`<text transform=${`translate(12 ${(MARGIN.top + foot) / 2}) rotate(-90)`} text-anchor="middle">${axisTitle(down)}</text>`}

@@ -1,5 +1,6 @@
 /** Every set in numbers; the headings sort. */
 import { fixed } from "../units.js";
+import { Sideways } from "../sideways.js";
 import { html, useState } from "../view.js";
 import { axisTitle, metricTitle, valueText } from "./words.js";
 
@@ -13,14 +14,14 @@ export function Sets({ study, metric, layout }) {
   const sorted = [...study.sets].sort((a, b) => compared(by.value(a), by.value(b)) * (order.up ? 1 : -1));
   const shown = all ? sorted : sorted.slice(0, SHOWN);
   return html`
-    <div class="sets-scroll">
+    <${Sideways} name="sets-scroll">
       <table class="sets-table">
         <caption class="unseen">Sets of this study</caption>
         <thead><tr>${columns.map((column) => html`<${Heading} column=${column} order=${order} sortBy=${sortBy} />`)}</tr></thead>
         <tbody>${shown.map((set) => html`<tr key=${set.set} data-best=${set.set === study.best?.set}>${columns.map(({ name, cell }) => html`<td data-column=${name}>${cell(set)}</td>`)}</tr>`)}</tbody>
       </table>
       ${shown.length < sorted.length && html`<p class="show-more"><button type="button" onClick=${() => showAll(true)}>Show all ${sorted.length.toLocaleString("en")}</button></p>`}
-    </div>
+    <//>
   `;
 }
 

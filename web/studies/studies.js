@@ -32,6 +32,6 @@ function All() {
 
 function Content({ studies, error }) {
   if (studies === null) return error ? null : html`<p class="hint padded">Loading the studies…</p>`;
-  if (studies.length === 0) return html`<p class="hint padded">No study yet.</p>`;
+  if (studies.length === 0) return html`<p class="hint padded">No study yet. A new one begins with what is selected in the run panel above.</p>`;
   return html`<${List} studies=${studies} />`;
 }

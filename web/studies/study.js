@@ -1,6 +1,7 @@
 /** One study: how far it is, what it does now, its figures, and what can be done with it. */
 import { html, useEffect, useRef, useState } from "../view.js";
 import { filterBy, NO_FILTER } from "../runs/listing.js";
+import { DownloadMenu } from "../runs/menu.js";
 import { counted, exactly } from "../runs/words.js";
 import { compose } from "./composing.js";
 import { CampaignConsent, needsConsent } from "./consent.js";
@@ -68,15 +69,14 @@ function Buttons({ study, working }) {
   const resume = () => (needsConsent(study.on) ? agree(true) : resumeStudy(study.id));
   const running = study.state === "running";
   const over = study.state === "finished";
+  const nothing = study.done > 0 ? "" : "No run has finished yet.";
   const address = `/api/v1/studies/${encodeURIComponent(study.id)}`;
   return html`
     <div class="run-buttons">
       ${running && html`<button class="next" type="button" disabled=${working !== ""} onClick=${() => stopStudy(study.id)}>Stop study</button>`}
       ${!running && !over && html`<button class="next" type="button" disabled=${working !== ""} onClick=${resume}>${study.state === "planned" ? "Start study" : "Resume study"}</button>`}
-      <${Away} href=${`${address}/report`} words="Report" there=${study.done > 0} opens />
-      <${Away} href=${`${address}/table.csv`} words="Table, CSV" there=${study.done > 0} />
-      <${Away} href=${`${address}/plot.png`} words="Figure, PNG" there=${study.done > 0} />
-      <${Away} href=${`${address}/report.zip`} words="Everything, ZIP" there=${study.done > 0} />
+      <${Report} href=${`${address}/report`} why=${nothing} />
+      <${DownloadMenu} title="Download" why=${nothing} links=${FILES.map(([file, words]) => [`${address}/${file}`, words])} />
       ${study.on === "rig" && html`<button type="button" onClick=${() => showRunsOf(study)}>Its runs</button>`}
       <button type="button" onClick=${() => compose(study.definition)}>Use as a new study</button>
       <button type="button" disabled=${running} title=${running ? "It goes on; stop it first." : ""} onClick=${() => ask(true)}>Delete…</button>
@@ -87,11 +87,14 @@ function Buttons({ study, working }) {
   `;
 }
 
-/** A link that looks like a button; before there is anything behind it, a button that cannot be pressed. */
-function Away({ href, words, there, opens = false }) {
-  if (!there) return html`<button type="button" disabled title="No run has finished yet.">${words}</button>`;
-  return opens ? html`<a class="button" href=${href} target="_blank" rel="noopener">${words}</a>` : html`<a class="button" href=${href} download>${words}</a>`;
+/** A page of its own; before there is anything on it, a button that cannot be pressed. */
+function Report({ href, why }) {
+  if (why) return html`<button type="button" disabled title=${why}>Report</button>`;
+  return html`<a class="button" href=${href} target="_blank" rel="noopener">Report</a>`;
 }
+
+/** [file, words] */
+const FILES = [["table.csv", "Table, CSV"], ["plot.png", "Figure, PNG"], ["report.zip", "Everything, ZIP"]];
 
 function showRunsOf(study) {
   filterBy({ ...NO_FILTER, study: study.id });

@@ -33,8 +33,10 @@ export function roughly(seconds) {
   if (typeof seconds !== "number" || !Number.isFinite(seconds)) return "–";
   if (seconds < 100) return `${Math.max(1, Math.round(seconds))} s`;
   if (seconds < 100 * MINUTE) return `${Math.round(seconds / MINUTE)} min`;
-  if (seconds < DAY) return `${Math.floor(seconds / HOUR)} h ${Math.round((seconds % HOUR) / MINUTE)} min`;
-  return `${counted(Math.floor(seconds / DAY), "day")} ${Math.round((seconds % DAY) / HOUR)} h`;
+  const minutes = Math.round(seconds / MINUTE);
+  if (minutes < DAY / MINUTE) return `${Math.floor(minutes / 60)} h ${minutes % 60} min`;
+  const hours = Math.round(seconds / HOUR);
+  return `${counted(Math.floor(hours / 24), "day")} ${hours % 24} h`;
 }
 
 /** "412 of 630 runs, 3 failed, 1:20 min left". */

@@ -1,0 +1,100 @@
+"""Every main view, in every window: nobody is kept out, nothing is cut or covered, STOP is in reach."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from dashboard_visit import OpenTab, Visit
+from playwright.sync_api import Page
+from rooms import ROOMS, Room
+from views import VIEWS, House
+
+pytestmark = pytest.mark.exclusive
+
+REPOSITORY = Path(__file__).parents[2]
+AXE = REPOSITORY / ".stamps" / "javascript" / "node_modules" / "axe-core" / "axe.min.js"
+LAYOUT_FAULTS = (Path(__file__).parent / "layout_faults.js").read_text(encoding="utf-8")
+RULES = ("wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice")
+SERIOUS = ("serious", "critical")
+LEFT_OUT = "label-content-name-mismatch"
+"""An experiment of axe's that takes signs of keys and arrows, which are hidden from readers, for words of the label."""
+EXAMINED = (Room(1440, 900, "light"), Room(390, 844, "dark"))
+"""Where axe looks in an everyday test: both schemes, both ends of the sizes."""
+
+
+@pytest.fixture(scope="module")
+def house(tmp_path_factory: pytest.TempPathFactory) -> Iterator[House]:
+    house = House.furnished(tmp_path_factory.mktemp("house"))
+    yield house
+    house.rig.stop()
+
+
+@pytest.fixture(scope="module")
+def visit(house: House, open_lasting_tab: OpenTab) -> Visit:
+    visit = open_lasting_tab(house.rig.url, scene=False)
+    load(visit.page, house)
+    return visit
+
+
+def load(page: Page, house: House) -> None:
+    page.goto(house.rig.url)
+    page.evaluate(AXE.read_text(encoding="utf-8"))
+
+
+@pytest.fixture(scope="module", params=VIEWS)
+def page(request: pytest.FixtureRequest, house: House, visit: Visit) -> Iterator[Page]:
+    """One of the views; when it does not open, the next one begins on a new page."""
+    with contextlib.ExitStack() as opened:
+        opened.callback(enter, visit.page, ROOMS[0])
+        try:
+            opened.enter_context(VIEWS[request.param](visit.page, house))
+        except BaseException:
+            house.rig.rest()
+            load(visit.page, house)
+            raise
+        yield visit.page
+
+
+def enter(page: Page, room: Room) -> None:
+    """The same page in another window."""
+    page.set_viewport_size({"width": room.width, "height": room.height})
+    page.emulate_media(color_scheme=room.scheme)
+
+
+def examined(page: Page) -> list[str]:
+    """What axe finds to be serious: rule, place and its advice."""
+    found: dict[str, Any] = page.evaluate(
+        "([rules, leftOut]) => axe.run(document, { runOnly: rules, rules: { [leftOut]: { enabled: false } },"
+        " resultTypes: ['violations'], iframes: false })",
+        [RULES, LEFT_OUT],
+    )
+    return [
+        f"{rule['id']}: {node['html'][:150]} – {node['failureSummary'].splitlines()[-1].strip()}"
+        for rule in found["violations"]
+        if rule["impact"] in SERIOUS
+        for node in rule["nodes"]
+    ]
+
+
+def test_axe_finds_nothing_serious(page: Page, full: bool) -> None:
+    found: dict[str, list[str]] = {}
+    for room in ROOMS if full else EXAMINED:
+        enter(page, room)
+        found[str(room)] = examined(page)
+    assert not any(found.values()), report(found)
+
+
+def test_nothing_is_cut_covered_or_out_of_reach(page: Page) -> None:
+    found: dict[str, list[str]] = {}
+    for room in ROOMS[:3]:
+        enter(page, room)
+        found[str(room)] = page.evaluate(LAYOUT_FAULTS)
+    assert not any(found.values()), report(found)
+
+
+def report(found: dict[str, list[str]]) -> str:
+    return "\n" + "\n".join(f"{room}:\n  " + "\n  ".join(faults) for room, faults in found.items() if faults)
