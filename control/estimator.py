@@ -148,7 +148,7 @@ class Estimator:
             return None
         motion = self._motion(self._time, time)
         pose, self._grip = motion.arrival, motion.grip
-        self._filter.move(pose, (motion.dx, motion.dy), (motion.position_noise, motion.heading_noise))
+        self._filter.move(pose, (motion.dx, motion.dy), motion.noise)
         self._time = time
         at = time - self._settings.actuation_delay
         elevation = self._field.elevation_at(at)
@@ -182,8 +182,8 @@ class Estimator:
     def carry(self, time: float) -> Carried:
         """The estimate carried forward to `time` (s) through what the field has done since."""
         motion = self._motion(self._time, time)
-        noise = motion.position_noise, motion.heading_noise
-        return Carried(motion.arrival, moved(self._filter.covariance, (motion.dx, motion.dy), noise))
+        covariance = moved(self._filter.covariance, (motion.dx, motion.dy), motion.noise)
+        return Carried(motion.arrival, covariance)
 
     @property
     def position_sigma(self) -> float:
@@ -199,10 +199,11 @@ class Estimator:
         """The body's motion from `start` to `end` (s), as the field has led it."""
         settings, grip = self._settings, self._grip
         if grip.hold != self._field.full_at:
-            grip = Grip(self._field.full_at)  # it came up along the body's heading: the body lies amid its play
+            grip = Grip(self._field.full_at)  # it comes up along the body's heading, amid the play
         delay, elapsed = settings.actuation_delay, max(end - start, 0.0)
         departure = arrival = Pose(*self._filter.mean)
         position, heading = settings.noise(elapsed, is_held=self._field.is_ready)
+        noise = position, 0.0, 0.0, position, 0.0, heading
         switches = 0
         for turn in self._field.turns(start - delay, end - delay):
             held = grip.after(turn, self.half_play)
@@ -210,10 +211,13 @@ class Estimator:
                 arrival = self._landed(arrival, grip)
                 switches += 1
             arrival = swing(arrival, turn.pivot, turn.angle + grip.slack - held.slack, self._length)
-            heading += ((settings.swing if held.is_tight else settings.loose) * turn.angle) ** 2
+            doubt = (settings.swing if held.is_tight else settings.loose) * turn.angle
+            noise = swung(noise, doubt, arrival.heading, 0.5 * self._length * turn.pivot)
             grip = held
-        position += (switches or self._may_switch(start - delay, end - delay)) * settings.slip**2
-        return Motion(arrival, grip, arrival.x - departure.x, arrival.y - departure.y, position, heading)
+        slip = (switches or self._may_switch(start - delay, end - delay)) * settings.slip**2
+        xx, xy, xh, yy, yh, hh = noise
+        noise = xx + slip, xy, xh, yy + slip, yh, hh
+        return Motion(arrival, grip, arrival.x - departure.x, arrival.y - departure.y, noise)
 
     def _may_switch(self, start: float, end: float) -> bool:
         """Whether the robot may have taken its other end between two instants, s."""
@@ -226,13 +230,24 @@ class Estimator:
         return pose if model is None or grip.pivot is None else model.landed(pose, grip.pivot, grip.turned)
 
 
+def swung(noise: Covariance, doubt: float, heading: float, arm: float) -> Covariance:
+    """The noise of a motion that ends with a swing to `heading`, rad, known to within `doubt` (rad, one sigma).
+
+    A body that turns less or more than expected does so about its pivot, so its centre stays back or goes on along
+    the arc. arm: from the pivot to the centre, m, signed.
+    """
+    xx, xy, xh, yy, yh, hh = noise
+    x, y = arm * math.cos(heading), arm * math.sin(heading)
+    q = doubt * doubt
+    return xx + q * x * x, xy + q * x * y, xh + q * x, yy + q * y * y, yh + q * y, hh + q
+
+
 @dataclass(frozen=True, slots=True)
 class Motion:
-    """One piece of the body's motion: where it leads (dx, dy: displacement, m), and its process noise (variances)."""
+    """One piece of the body's motion: where it leads (dx, dy: displacement, m), and the covariance of its noise."""
 
     arrival: Pose
     grip: Grip
     dx: float
     dy: float
-    position_noise: float
-    heading_noise: float
+    noise: Covariance

@@ -22,23 +22,23 @@ Matrix = NDArray[np.float64]
 Triple = tuple[float, float, float]
 
 
-def moved(covariance: Covariance, motion: tuple[float, float], noise: tuple[float, float]) -> Covariance:
+def moved(covariance: Covariance, motion: tuple[float, float], noise: Covariance) -> Covariance:
     """The covariance after a motion of the body, F P F' + Q.
 
     motion: displacement (dx, dy), m. It is fixed in the body's frame, so it turns with the heading:
     F = d(arrival)/d(departure) is the identity but for -dy and dx in the heading's column.
-    noise: variances of the process in position, m^2, and heading, rad^2: the diagonal of Q.
+    noise: of the process, Q.
     """
     dx, dy = motion
     xx, xy, xh, yy, yh, hh = covariance
     moved_xh, moved_yh = xh - dy * hh, yh + dx * hh
     return (
         xx - dy * (xh + moved_xh) + noise[0],
-        xy + dx * xh - dy * moved_yh,
-        moved_xh,
-        yy + dx * (yh + moved_yh) + noise[0],
-        moved_yh,
-        hh + noise[1],
+        xy + dx * xh - dy * moved_yh + noise[1],
+        moved_xh + noise[2],
+        yy + dx * (yh + moved_yh) + noise[3],
+        moved_yh + noise[4],
+        hh + noise[5],
     )
 
 
@@ -84,7 +84,7 @@ class PivotFilter(ExtendedKalmanFilter):
         """Standard deviation of the heading, rad."""
         return math.sqrt(max(self.covariance[5], 0.0))
 
-    def move(self, arrival: Pose, motion: tuple[float, float], noise: tuple[float, float]) -> None:
+    def move(self, arrival: Pose, motion: tuple[float, float], noise: Covariance) -> None:
         """Predict: the arc leads to `arrival`; motion and noise as in `moved`."""
         self.mean = (arrival.x, arrival.y, arrival.heading)
         self.covariance = moved(self.covariance, motion, noise)

@@ -20,6 +20,7 @@ from control.simulation.faults.injection import Faults
 from control.simulation.world import World
 from server.calibration.optics import calibration_problem, model_in_use
 from server.data_folder import data_folder
+from server.garbage import set_aside
 from server.recording.writing.disk import Disk
 from server.seams import FaultySeams, Seams
 from server.settings import MM, MS, RigFile
@@ -71,6 +72,8 @@ class Machine:
         """
         if not camera_may_come:
             self.camera.require()
+        if self.world is None:
+            set_aside()  # no current flows yet; later a search for garbage would hold up the loop that drives
         self.link.open(patiently=patiently)
 
     def stop_coils(self) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import json
+import shutil
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,7 +20,7 @@ from control.trajectories.custom import SavedPath, TooManyPaths, save_path
 from control.trajectories.trajectory import MM
 from control.trajectories.waypoints import Smoothing, WaypointsParameters
 from server.api.schemas import CustomPathBody
-from server.atomic_save import Staged, replace_file
+from server.atomic_save import Staged
 
 NAME = "trajectories.json"
 """In the data folder."""
@@ -124,7 +125,7 @@ def _aside(file: Path) -> str:
     """Keep what could not be read, before the next save replaces it."""
     copy = file.with_name(file.name + ".unread")
     try:
-        replace_file(copy, file.read_text(encoding="utf-8", errors="replace"))
+        shutil.copyfile(file, copy)
     except OSError as error:
         return f"the file could not be put aside either ({error.strerror})"
     return f"the file as it was is kept as {copy.name}"

@@ -77,10 +77,10 @@ class Reaction:
             return self._carrying_on(now)
         code = "" if cause is None else cause.code
         promise = self.promise
-        if code not in {code for _, code in promise.outcomes} and self.became is not promise.met:
-            return self._otherwise()
         if self.zero is None and not self.is_over:
             return Verdict.WATCHING
+        if code not in {code for _, code in promise.outcomes} and self.became is not promise.met:
+            return self._for_another_reason()
         noticed_by = None if promise.noticed is None else promise.noticed * 1e-3
         in_time = is_within(self.noticed(cause), noticed_by) and is_within(self.zero, self.due)
         return Verdict.KEPT if in_time and self.became in promise.states else self._otherwise()
@@ -95,6 +95,10 @@ class Reaction:
             return Verdict.KEPT if elapsed > CARRIED_ON else Verdict.WATCHING
         due = (self.promise.noticed or 0) * 1e-3 + ALLOWANCE
         return Verdict.WATCHING if elapsed < max(due, CARRIED_ON) else self._otherwise()
+
+    def _for_another_reason(self) -> Verdict:
+        """A busy computer, or a hand on STOP, was quicker than the fault; where nothing should stop, that was it."""
+        return self._otherwise() if RigState.RUNNING in self.promise.states else Verdict.OPEN
 
     def _otherwise(self) -> Verdict:
         """Not what was promised; the promise itself is for a robot that walks, and for the usual fault."""

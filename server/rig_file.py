@@ -67,7 +67,8 @@ def settings_in(text: str, path: Path) -> RigFile:
     try:
         return RigFile.model_validate(values)
     except ValidationError as error:
-        words = in_words(error, lambda field: _at_line(text, field))
+        lines = _lines(text)
+        words = in_words(error, lambda field: _at_line(lines, field))
         raise RigFileError(f"the rig file {path} cannot be used:\n{words}") from error
 
 
@@ -86,10 +87,9 @@ _HEADER = re.compile(r"\s*\[\s*([^\[\]]+?)\s*\]")
 _KEY = re.compile(r"\s*([\w.\"'-]+(?:\s*\.\s*[\w\"'-]+)*)\s*=")
 
 
-def _at_line(text: str, field: tuple[str | int, ...]) -> str:
+def _at_line(lines: Mapping[tuple[str, ...], int], field: tuple[str | int, ...]) -> str:
     """ " (line 7)" for the line that sets a field, or the table that lacks it; "" when neither is there."""
     wanted = tuple(str(part) for part in field)
-    lines = _lines(text)
     for length in range(len(wanted), 0, -1):
         if wanted[:length] in lines:
             return f" (line {lines[wanted[:length]]})"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping, MutableMapping
 from typing import Any
 
@@ -13,6 +14,9 @@ from vision.sources.addresses import SECRET, shown
 
 Hide = Callable[[str], str]
 Secret = tuple[str, str, Hide, str]
+
+_PUT_ASIDE = re.compile(r"\b((?:uri|webhook_url)[\"']?\s*=\s*[\"']*)[^\"'\n]+")
+"""A secret setting within a comment; the value goes whole."""
 
 
 def _secrets(own: RigFile) -> tuple[Secret, ...]:
@@ -34,13 +38,19 @@ def with_secrets(changes: Mapping[str, Any], own: RigFile) -> dict[str, Any]:
 
 
 def text_without_secrets(text: str) -> str:
-    """A rig file's text as it may be given away; its comments stay."""
+    """A rig file's text as it may be given away; its comments stay, but for the values of what is secret."""
     document = tomlkit.parse(text)
     for section, field, hide, _ in _secrets(RigFile()):
         values = document.get(section)
         if isinstance(values, MutableMapping) and isinstance(value := values.get(field), str):
             values[field] = hide(str(value))
-    return tomlkit.dumps(document)
+    return "".join(_told(line) for line in tomlkit.dumps(document).splitlines(keepends=True))
+
+
+def _told(line: str) -> str:
+    """A line whose comment may be a setting that somebody has put out of force."""
+    code, mark, comment = line.partition("#")
+    return code + mark + _PUT_ASIDE.sub(rf"\1{SECRET}", comment) if mark and not code.strip() else line
 
 
 def text_with_secrets(text: str, own: RigFile) -> str:

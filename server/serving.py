@@ -79,6 +79,7 @@ def serve_rig(
     application = create_app(rig, archive, changes=RigChanges(rig, store, as_run))
     application.state.notifier.address = address
     server = _Server(rig, application, address, open_browser)
+    application.openapi()  # kept for whoever asks: to make it takes 0.3 s, in which the loop would stand still
     set_aside()  # the greater part before the loop runs, which a search would hold up
     with listener, handled({ESTOP: server.handle_estop, signal.SIGHUP: server.handle_exit}):
         server.run(sockets=[listener])

@@ -63,6 +63,8 @@ class Call:
                 raise TimeoutError
             self._connection = connection
         connection.connect()
+        if self._broken_off:  # while its name was looked up, or between two of its addresses
+            raise TimeoutError
         return connection, urlunsplit(("", "", parts.path or "/", parts.query, ""))
 
     def break_off(self) -> None:

@@ -3,7 +3,6 @@ import { Bar, stateWord } from "./bar/bar.js";
 import { ConsentDialog } from "./bar/consent.js";
 import { Notices } from "./bar/notices.js";
 import { Camera } from "./camera/camera.js";
-import { Charts } from "./charts/charts.js";
 import { Journal } from "./journal/journal.js";
 import { lazy } from "./journal/lazy.js";
 import { HelpPopover } from "./help/popover.js";
@@ -20,6 +19,7 @@ import { html, render, useEffect } from "./view.js";
 
 const root = /** @type {HTMLElement} */ (document.getElementById("app"));
 
+const Charts = lazy(() => import("./charts/charts.js").then((module) => module.Charts), "the charts", "charts");
 const Wizard = lazy(() => import("./calibration/wizard.js").then((module) => module.Wizard), "the camera’s setup");
 const ReplayBar = lazy(() => import("./replay/bar.js").then((module) => module.ReplayBar), "the recording");
 const ReplayRoom = lazy(() => import("./replay/room.js").then((module) => module.ReplayRoom), "the recording");

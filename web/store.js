@@ -4,7 +4,7 @@
  */
 import { rememberedView } from "./charts/remembered.js";
 import { remembered } from "./scene/layers.js";
-import { useEffect, useState } from "./view.js";
+import { useEffect, useRef, useState } from "./view.js";
 
 /** @typedef {import("./types").State} State */
 
@@ -116,12 +116,12 @@ export function amend(name, part) {
 export function useStore(select) {
   const [, redraw] = useState(0);
   const selected = select(state);
+  // A selection may depend on what its component was drawn with: the newest one counts, against what is drawn.
+  const drawn = useRef({ select, selected });
+  drawn.current = { select, selected };
   useEffect(() => {
-    let last = select(state);
     const check = () => {
-      const next = select(state);
-      if (!same(last, next)) redraw((count) => count + 1);
-      last = next;
+      if (!same(drawn.current.selected, drawn.current.select(state))) redraw((count) => count + 1);
     };
     listeners.add(check);
     check();

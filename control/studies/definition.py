@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import tomllib
 from collections.abc import Mapping
+from itertools import chain
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import Field, StringConstraints, ValidationError, field_validator, model_validator
@@ -91,6 +92,12 @@ class StudyDefinition(Edge):
         if self.design == "list":
             return tuple(dict.fromkeys(axis for one in self.sets for axis in one))
         return tuple(axis.of for axis in self.axes)
+
+    def walks_along(self, trajectory: str) -> bool:
+        """Whether some of its runs may take the trajectory of that name."""
+        varied = (axis.values or () for axis in self.axes if axis.of == "trajectory")
+        listed = (one.get("trajectory") for one in self.sets)
+        return trajectory in (self.trajectory.name, *chain.from_iterable(varied), *listed)
 
     @classmethod
     def from_toml(cls, text: str) -> StudyDefinition:

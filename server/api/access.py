@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from server.rig import Rig
     from server.rig_changes import RigChanges
     from server.scene.viewers.known import Viewers
+    from server.studies.desk import StudyDesk
 
 
 async def the_rig(connection: HTTPConnection) -> Rig:
@@ -50,6 +51,10 @@ async def the_tick_text(connection: HTTPConnection) -> TickText:
     return connection.app.state.tick_text
 
 
+async def the_desk(connection: HTTPConnection) -> StudyDesk:
+    return connection.app.state.studies
+
+
 async def the_fault_watch(connection: HTTPConnection) -> FaultWatch:
     return connection.app.state.fault_watch
 
@@ -61,4 +66,5 @@ TheChanges = Annotated["RigChanges | None", Depends(the_changes)]
 ThePictures = Annotated[Pictures, Depends(the_pictures)]
 TheViewers = Annotated["Viewers", Depends(the_viewers)]
 TheFaultWatch = Annotated["FaultWatch", Depends(the_fault_watch)]
+TheDesk = Annotated["StudyDesk", Depends(the_desk)]
 TheTickText = Annotated[TickText, Depends(the_tick_text)]

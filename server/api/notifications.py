@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+from functools import partial
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Depends
@@ -14,6 +15,7 @@ from server.api.body import StrictRoute
 from server.api.problems import Problem, Rejected
 from server.notification_section import shown_webhook
 from server.notifier import Notifier
+from server.own_thread import in_a_thread
 from server.webhook import Call, NotDelivered
 
 router = APIRouter(prefix="/notifications", tags=["notifications"], route_class=StrictRoute)
@@ -39,9 +41,11 @@ async def test(rig: TheRig, notifier: TheNotifier) -> dict[str, Any]:
         raise Refused("a test is under way already; wait for its answer")
     body = notifier.body("test", "this is a test, sent by hand from the dashboard")
     async with trying:
+        call = Call(section.webhook_url, section.timeout_s)
         try:
-            call = Call(section.webhook_url, section.timeout_s)
-            status = await asyncio.to_thread(call.post, body)
+            status = await in_a_thread(partial(call.post, body), "webhook's test")
         except NotDelivered as error:
             raise Rejected(Problem(502, "Not delivered", f"It was not delivered: {error}.")) from error
+        finally:
+            call.break_off()  # the server may end, or who has asked may have gone
     return {"status": status, "to": shown_webhook(section.webhook_url), "sent": body}

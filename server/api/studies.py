@@ -15,6 +15,7 @@ from starlette.responses import FileResponse
 
 from control.simulation.plants import plants
 from control.studies.checking import Survey
+from server.api.access import TheDesk
 from server.api.body import StrictRoute
 from server.api.choices import listing
 from server.api.problems import Problem, Rejected, not_found, offence
@@ -36,15 +37,10 @@ StudyId = Annotated[str, Field(max_length=80)]
 PAGE = "report.html"
 
 
-async def the_desk(request: Request) -> StudyDesk:
-    return request.app.state.studies
-
-
 async def the_json(request: Request) -> StudyJson:
     return request.app.state.study_json
 
 
-TheDesk = Annotated[StudyDesk, Depends(the_desk)]
 TheJson = Annotated[StudyJson, Depends(the_json)]
 
 

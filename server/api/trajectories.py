@@ -14,7 +14,7 @@ from control.safety import Refused
 from control.trajectories import OutsideWorkspace, Trajectory, Waypoints, check_inside, trajectories
 from control.trajectories.trajectory import MM, length_of, points_of
 from control.trajectories.waypoint_file import ALLOWED, WaypointFileError, read_points
-from server.api.access import TheRig
+from server.api.access import TheDesk, TheRig
 from server.api.body import StrictRoute
 from server.api.choices import checked, listing, taken
 from server.api.problems import Problem, Rejected, invalid_field
@@ -27,6 +27,7 @@ from server.api.schemas import (
     RenameBody,
 )
 from server.custom_trajectories import NamedPath
+from server.studies.desk import StudyDesk
 
 router = APIRouter(tags=["trajectories"], route_class=StrictRoute)
 
@@ -91,10 +92,10 @@ async def one(name: PathName, rig: TheRig) -> dict[str, Any]:
 
 
 @router.patch("/trajectories/{name}")
-async def rename(name: PathName, body: RenameBody, rig: TheRig) -> dict[str, Any]:
+async def rename(name: PathName, body: RenameBody, rig: TheRig, studies: TheDesk) -> dict[str, Any]:
     """Another name for a saved path; refused while the rig uses it."""
     paths, path = rig.custom_trajectories, saved(rig, name)
-    require_unused(rig, name, "rename")
+    require_unused(rig, studies, name, "rename")
     if body.name in trajectories:
         raise Rejected(taken(body.name, trajectories))
     paths.forget(name)
@@ -110,10 +111,10 @@ async def rename(name: PathName, body: RenameBody, rig: TheRig) -> dict[str, Any
 
 
 @router.delete("/trajectories/{name}")
-async def forget(name: PathName, rig: TheRig) -> dict[str, Any]:
+async def forget(name: PathName, rig: TheRig, studies: TheDesk) -> dict[str, Any]:
     """Take a saved path out; the answer is what saves it again. Refused while the rig uses it."""
     paths, path = rig.custom_trajectories, saved(rig, name)
-    require_unused(rig, name, "delete")
+    require_unused(rig, studies, name, "delete")
     paths.forget(name)
     try:
         await paths.keep()
@@ -138,8 +139,10 @@ def put(rig: TheRig, path: NamedPath) -> None:
     rig.custom_trajectories.save(path.name, points, whole.closed, whole.speed_mm_s * MM, whole.kind)
 
 
-def require_unused(rig: TheRig, name: str, verb: str) -> None:
+def require_unused(rig: TheRig, studies: StudyDesk, name: str, verb: str) -> None:
     """What a run walks, or the next one will, keeps its name."""
+    if (study := studies.campaign_along(name)) is not None:
+        raise Refused(f"the study {study!r} walks along {name!r}; {verb} it when that has ended")
     chosen = rig.selection.trajectory.name == name
     walked = any(
         run.request.selection.trajectory.name == name for run in rig.runs if run.state is RunState.RUNNING

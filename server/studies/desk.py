@@ -11,17 +11,16 @@ import asyncio
 import contextlib
 import json
 import logging
-import threading
 import time
-from collections.abc import Callable, Coroutine, Mapping
+from collections.abc import Coroutine, Mapping
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any
 
 from control.studies.checking import Survey, runs_at_most, survey
 from control.studies.definition import StudyDefinition
 from server.occupation import Stop
+from server.own_thread import in_a_thread
 from server.rig_life import ENDED
 from server.studies.campaign import Activity, Campaign
 from server.studies.child import Child, ChildFailed, Verb
@@ -32,8 +31,6 @@ from server.studies.study import Study
 if TYPE_CHECKING:
     from server.archive import Archive
     from server.rig import Rig
-
-T = TypeVar("T")
 
 log = logging.getLogger(__name__)
 
@@ -110,6 +107,12 @@ class StudyDesk:
         raise StudyBusy(
             f"the study {other.study.definition.name!r} {where}; wait until it has finished, or stop it first"
         )
+
+    def campaign_along(self, trajectory: str) -> str | None:
+        """The name of the campaign that goes on and has runs along that trajectory, if there is one."""
+        going_on = (work.study.definition for work in self._works.values())
+        found = (each.name for each in going_on if each.on == "rig" and each.walks_along(trajectory))
+        return next(found, None)
 
     def asked(self, *, consent: bool, jobs: int) -> Asked:
         """To be called first of all, so that no stop is missed while a study is made ready."""
@@ -242,22 +245,3 @@ class StudyDesk:
         async with self._seats:
             child = await Child.started(verb, self._data, study.id)
             return await child.output()
-
-
-async def in_a_thread(work: Callable[[], T], name: str) -> T:
-    """Done by a thread of its own, since it may take days; a program that has to end does not wait for it."""
-    loop = asyncio.get_running_loop()
-    done: asyncio.Future[T] = loop.create_future()
-
-    def run() -> None:
-        try:
-            result = work()
-        except Exception as error:  # noqa: BLE001 (it goes to who has asked)
-            settle = partial(done.set_exception, error)
-        else:
-            settle = partial(done.set_result, result)
-        with contextlib.suppress(RuntimeError):  # the server has ended meanwhile
-            loop.call_soon_threadsafe(lambda: done.done() or settle())
-
-    threading.Thread(target=run, name=name, daemon=True).start()
-    return await done

@@ -17,7 +17,7 @@ from typing import Any
 from urllib.parse import urlsplit
 
 import pytest
-from playwright.sync_api import BrowserContext, ConsoleMessage, Locator, Page
+from playwright.sync_api import BrowserContext, ConsoleMessage, Locator, Page, Request
 
 START_TIMEOUT = 90.0
 """A server under load is up within this, s."""
@@ -130,9 +130,15 @@ class Visit:
         context.expose_function("tellOfRefusal", lambda refusal: self.refused.append(refusal))
         context.add_init_script(TELLS_OF_REFUSALS)
         context.on("request", lambda request: self.requests.append(request.url))
+        context.on("requestfailed", self._stayed)
         self.page.on("websocket", lambda socket: self.requests.append(socket.url))
         self.page.on("pageerror", lambda error: self.complaints.append(str(error)))
         self.page.on("console", self._heard)
+
+    def _stayed(self, request: Request) -> None:
+        """What the page's policy has refused was told of and never sent."""
+        if request.failure == "csp":
+            self.requests.remove(request.url)
 
     def _heard(self, message: ConsoleMessage) -> None:
         if message.type == "error" and not REFUSAL.search(message.text):

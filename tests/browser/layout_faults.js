@@ -98,9 +98,12 @@
   if (inside && before !== stop) faults.push(`${before ? name(before) : "nothing"} lies before STOP`);
 
   // Fingers find STOP and the jog without looking; the smaller sizes of everything else are axe's to judge.
-  for (const pad of [...document.querySelectorAll(".jog button")].filter(isSeen)) {
+  for (const pad of [...document.querySelectorAll(".jog-pad")].filter(isSeen)) {
     const { width, height } = pad.getBoundingClientRect();
     if (Math.min(width, height) < LEAST) faults.push(`${name(pad)} is only ${width} × ${height} px`);
   }
+  // Who asks for no motion gets none.
+  const moving = document.getAnimations().filter(({ effect }) => isSeen(effect.target));
+  if (matchMedia("(prefers-reduced-motion: reduce)").matches) faults.push(...moving.map(({ effect }) => `${name(effect.target)} moves`));
   return [...new Set(faults)];
 }

@@ -27,6 +27,8 @@ SCRIPT = frozenset(
 FRAME = "PrePaint"
 CATEGORIES = "devtools.timeline,disabled-by-default-devtools.timeline,devtools.timeline.frame,v8,v8.execute"
 
+STANDS = """() => performance.getEntriesByName("dashboard stands").length > 0"""
+
 PAINTS = """() => new Promise((tell) => {
   new PerformanceObserver((list) => tell({
     largest: list.getEntries().at(-1).startTime,

@@ -13,9 +13,7 @@ from server.headless import Headless
 from server.settings import RigFile
 
 
-def walk(
-    archive: Archive, label: str, sweep_deg: float, duration: float, trajectory: str = "circle"
-) -> str:
+def walk(archive: Archive, label: str, sweep_deg: float, duration: float, trajectory: str = "circle") -> str:
     """What is walked for `duration` s; the id of the run, which ends with the first word of its label."""
     id = f"20260101-000000-{label.split()[0]}"
     gait = Gait(sweep=math.radians(sweep_deg))

@@ -25,6 +25,24 @@ LEFT_OUT = "label-content-name-mismatch"
 EXAMINED = (Room(1440, 900, "light"), Room(390, 844, "dark"))
 """Where axe looks in an everyday test: both schemes, both ends of the sizes."""
 
+ZOOMED = Room(720, 450)
+"""The desk's window at 200 %."""
+FOCUSED = """() => {
+  const at = document.activeElement;
+  if (!at || at === document.body) return null;
+  const box = at.getBoundingClientRect();
+  const isOutlined = (element) => element && parseFloat(getComputedStyle(element).outlineWidth) > 0
+    && getComputedStyle(element).outlineStyle !== "none";
+  return {
+    words: `${at.tagName} ${at.getAttribute("aria-label") ?? at.textContent ?? ""} ${at.id}`.trim().slice(0, 60),
+    isSeen: at.tagName === "IFRAME" || [at, at.nextElementSibling, at.closest("label")].some(isOutlined),
+    isInWindow: box.bottom > 0 && box.top < innerHeight && box.right > 0 && box.left < innerWidth,
+  };
+}"""
+"""Where the keys are, and whether a person sees it."""
+STATIONS = 250
+"""More than there are places for the keys on a page that is at rest."""
+
 
 @pytest.fixture(scope="module")
 def house(tmp_path_factory: pytest.TempPathFactory) -> Iterator[House]:
@@ -41,6 +59,7 @@ def visit(house: House, open_lasting_tab: OpenTab) -> Visit:
 
 
 def load(page: Page, house: House) -> None:
+    enter(page, ROOMS[0])
     page.goto(house.rig.url)
     page.evaluate(AXE.read_text(encoding="utf-8"))
 
@@ -60,9 +79,10 @@ def page(request: pytest.FixtureRequest, house: House, visit: Visit) -> Iterator
 
 
 def enter(page: Page, room: Room) -> None:
-    """The same page in another window."""
+    """The same page in another window; colours change at once for who wants no motion."""
     page.set_viewport_size({"width": room.width, "height": room.height})
-    page.emulate_media(color_scheme=room.scheme)
+    page.emulate_media(color_scheme=room.scheme, reduced_motion="reduce")
+    page.evaluate("scrollTo(0, 0)")
 
 
 def examined(page: Page) -> list[str]:
@@ -90,10 +110,30 @@ def test_axe_finds_nothing_serious(page: Page, full: bool) -> None:
 
 def test_nothing_is_cut_covered_or_out_of_reach(page: Page) -> None:
     found: dict[str, list[str]] = {}
-    for room in ROOMS[:3]:
+    for room in (*ROOMS[:3], ZOOMED):
         enter(page, room)
         found[str(room)] = page.evaluate(LAYOUT_FAULTS)
     assert not any(found.values()), report(found)
+
+
+def test_with_keys_alone_one_comes_round_the_page_and_sees_where_one_is(visit: Visit) -> None:
+    page = visit.page
+    for _ in range(STATIONS):  # from wherever one is to the page's end
+        page.keyboard.press("Tab")
+        if page.evaluate(FOCUSED) is None:
+            break
+    passed: list[dict[str, Any]] = []
+    for _ in range(STATIONS):
+        page.keyboard.press("Tab")
+        station = page.evaluate(FOCUSED)
+        if station is not None:
+            passed.append(station)
+        elif passed:
+            break
+    assert len(passed) < STATIONS, "the keys come to the end of the page"
+    for words in ("STOP", "Arm", "Camera picture", "Set up camera", "Runs"):
+        assert any(words in station["words"] for station in passed), words
+    assert [station for station in passed if not (station["isSeen"] and station["isInWindow"])] == []
 
 
 def report(found: dict[str, list[str]]) -> str:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import re
+import urllib.error
 from collections.abc import Iterator
 
 import pytest
@@ -10,6 +12,12 @@ from dashboard_visit import OpenTab, ServedRig, Visit, eventually, rig_state
 from playwright.sync_api import Locator, Page, expect
 
 pytestmark = pytest.mark.exclusive
+
+
+STEPS = {"disarmed": "/arm", "armed": "/runs", "held": "/runs/current/resume"}
+"""What leads from each state towards a robot that walks."""
+WALKS_FOR = 0.5
+"""Before a fault, s: the field is up after 0.3 s."""
 
 
 @pytest.fixture(scope="module")
@@ -39,16 +47,27 @@ def badge(page: Page) -> Locator:
     return page.get_by_role("banner").get_by_role("button", name="put in")
 
 
-def walk(page: Page) -> None:
-    button(page, re.compile("^Arm$")).click()
-    button(page, "Start walking").click()
+def walk(page: Page, served: ServedRig) -> None:
+    """Not by clicks: a computer that is busy just then lets the rig hold, and it is let go on until it walks."""
+
+    def walks() -> bool:
+        state = served.ask("/state")
+        if state["rig"] == "running" and state["run"]["elapsed_s"] > WALKS_FOR:
+            return True
+        step = STEPS.get(state["rig"])
+        if step is not None and state["tracking"] == "locked":
+            with contextlib.suppress(urllib.error.HTTPError):
+                served.send("POST", step)
+        return False
+
+    eventually(walks, "the robot walks", timeout=30.0)
     expect(rig_state(page)).to_contain_text("running")
 
 
 def test_a_camera_that_is_unplugged_with_a_click_holds_the_robot_and_comes_back_with_another(
-    page: Page,
+    page: Page, served: ServedRig
 ) -> None:
-    walk(page)
+    walk(page, served)
     button(page, re.compile("^Unplug the camera")).click()
     expect(rig_state(page)).to_contain_text("held")
     expect(rig_state(page)).to_contain_text("no frame for")
@@ -59,7 +78,7 @@ def test_a_camera_that_is_unplugged_with_a_click_holds_the_robot_and_comes_back_
     expect(kept).to_contain_text(
         re.compile(r"The rig holds after \d+ ms, and no current flowed after \d+ ms")
     )
-    expect(kept.get_by_role("status")).to_have_text(re.compile("Kept|Not kept"))
+    expect(kept.get_by_role("status")).to_have_text(re.compile("Kept|Not kept|Cannot say"))
     now_in(page).get_by_role("button", name="Take away: Camera unplugged").click()
     expect(now_in(page)).to_contain_text("Nothing: the rig works as it should.")
     expect(badge(page)).to_have_count(0)

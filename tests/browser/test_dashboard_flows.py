@@ -5,6 +5,7 @@ An everyday test walks each flow in one window, and the windows take turns; the 
 
 from __future__ import annotations
 
+import contextlib
 import math
 import re
 from collections.abc import Iterator
@@ -16,7 +17,7 @@ from playwright.sync_api import Locator, Page, expect
 from rooms import Room
 from setup_visit import button as setup_button
 from setup_visit import click_robot, open_setup
-from views import TABS
+from views import TABS, tab_of
 
 pytestmark = pytest.mark.exclusive
 
@@ -59,13 +60,23 @@ def state_is(page: Page, word: str) -> None:
 
 
 def open_page(page: Page, name: str) -> Locator:
-    page.get_by_role("tab", name=name, exact=True).click()
+    tab_of(page, name).click()
     return page.get_by_role("tabpanel", name=name)
 
 
 def arm(page: Page) -> None:
     button(page, "Arm").click()
     state_is(page, "armed")
+
+
+def reset(page: Page) -> None:
+    """Again, when a stop that was on its way comes after the first."""
+    fault = rig_state(page).filter(has_text="fault")
+    while fault.count() > 0:
+        button(page, "Reset").click()
+        with contextlib.suppress(AssertionError):
+            expect(fault).to_have_count(0, timeout=3e3)
+    state_is(page, "disarmed")
 
 
 def walk(page: Page) -> None:
@@ -192,9 +203,8 @@ def test_a_key_stops_the_rig_from_every_tab(page: Page) -> None:
         open_page(page, name)
         page.keyboard.press(("Escape", "Space")[number % 2])
         state_is(page, "fault")
-        expect(page.get_by_role("tab", name=name, exact=True)).to_have_attribute("aria-selected", "true")
-        button(page, "Reset").click()
-        state_is(page, "disarmed")
+        expect(tab_of(page, name)).to_have_attribute("aria-selected", "true")
+        reset(page)
     arm(page)
     open_setup(page, "Colour")
     page.keyboard.press("Escape")
@@ -234,16 +244,15 @@ def test_a_camera_that_is_lost_holds_the_robot_and_comes_back(page: Page) -> Non
 
 
 def test_a_server_that_is_killed_and_started_again_finds_its_page_as_it_was(
-    room: Room, workshop: ServedRig, open_tab: OpenTab
+    room: Room, own_server: ServedRig, open_tab: OpenTab
 ) -> None:
-    workshop.rest()
-    page = open_tab(workshop.url, scene=False, room=room).page
+    page = open_tab(own_server.url, scene=False, room=room).page
     arm(page)
-    workshop.kill()
+    own_server.kill()
     lost = page.get_by_role("alert").filter(has_text="No connection")
     expect(lost).to_be_visible()
     expect(button(page, "STOP")).to_be_in_viewport(ratio=1.0)
-    workshop.start()
+    own_server.start()
     expect(lost).to_have_count(0)
     state_is(page, "disarmed")
     arm(page)

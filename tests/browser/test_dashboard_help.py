@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any
 
 import pytest
 from dashboard_visit import OpenTab, ServedRig, Visit, rig_state
@@ -37,7 +38,8 @@ def test_every_parameter_of_gait_controllers_and_trajectories_has_words_and_a_fi
 ) -> None:
     catalogue = [["gait", name] for name in served.ask("/gait")["properties"]]
     for part, path in (("controller", "/controllers"), ("trajectory", "/trajectories")):
-        for entry in served.ask(path):
+        entries: list[Any] = list(served.ask(path))
+        for entry in entries:
             names = entry["parameters"].get("properties", {})
             catalogue += [[f"{part}.{entry['name']}", name] for name in names]
     assert len(catalogue) > 60

@@ -123,7 +123,7 @@ def test_a_run_is_found_looked_at_edited_and_taken_away(library: Library, visit:
     names(page).first.press("Enter")
     shown = details(page)
     expect(shown.get_by_role("heading", name="wet plate")).to_be_visible()
-    expect(shown.locator("div").filter(has_text=re.compile(r"^Mean error\d+\.\d{3} mm$"))).to_be_visible()
+    expect(shown.locator("div").filter(has_text=re.compile(r"^Mean error\?\d+\.\d{3} mm$"))).to_be_visible()
     figure = shown.get_by_role("img", name="Path, error over time")
     eventually(
         lambda: bool(figure.evaluate("image => image.naturalWidth > 100")),

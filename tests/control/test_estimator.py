@@ -168,6 +168,58 @@ def test_play_delays_the_body_by_its_width_after_a_reversal() -> None:
     assert estimator.carry(1.0).pose.heading == pytest.approx(0.02)
 
 
+def test_what_is_known_of_the_grip_ends_when_the_field_goes_off() -> None:
+    field = FieldModel(0.05, 0.1)
+    field.start(0.0, 0.0, PIVOT_A, 0.4, 0.001)
+    field.advance(0.1)
+    estimator = Estimator(SETTINGS, field, LENGTH)
+    estimator.start(sighting(Pose(0.0, 0.0, 0.0), 0.1))
+    estimator.half_play = 0.02
+    field.command(PIVOT_A, 0.4, 1.0, 0.3)
+    field.advance(0.5)
+    estimator.expect(0.5)
+    assert estimator.grip.is_tight
+    field.stop(0.5)
+    field.advance(0.6)
+    estimator.expect(0.6)
+    assert not estimator.grip.is_tight
+    field.start(0.6, 0.28, PIVOT_B, 0.4, 0.001)
+    field.advance(0.7)
+    field.command(PIVOT_B, 0.4, 1.0, 0.5)
+    estimator.expect(0.7)
+    there = estimator.carry(0.7).pose.heading
+    field.advance(0.71)
+    estimator.expect(0.71)
+    assert not estimator.grip.is_tight
+    assert estimator.carry(0.71).pose.heading == there, "the field first takes up the play again"
+
+
+@pytest.mark.parametrize("rate", [1.2, 2.0, -2.0])
+@pytest.mark.parametrize("pivot", [PIVOT_A, PIVOT_B])
+def test_a_body_that_stays_in_a_play_that_nobody_has_measured_is_believed(rate: float, pivot: Pivot) -> None:
+    """A body that turns less than its field has not come as far along its arc either."""
+    play = math.radians(4.0)
+    field = FieldModel(0.05, 0.1)
+    field.start(0.0, 0.3, pivot, 0.4, 0.001)
+    field.advance(0.1)
+    estimator = Estimator(SETTINGS, field, LENGTH)
+    body = Pose(0.0, 0.0, 0.3)
+    estimator.start(sighting(body, 0.1))
+    for frame in range(1, 10):
+        field.advance(0.1 + frame * PERIOD)
+        estimator.expect(0.1 + frame * PERIOD)
+        assert estimator.correct(sighting(body, 0.1 + frame * PERIOD))
+    now = 0.1 + 9 * PERIOD
+    field.command(pivot, 0.4, rate, 0.3 + math.copysign(0.5, rate))
+    for _ in range(20):
+        now += PERIOD
+        field.advance(now)
+        lead = field.heading_at(now - SETTINGS.actuation_delay) - body.heading
+        body = swing(body, pivot, math.copysign(max(0.0, abs(lead) - play), rate), LENGTH)
+        estimator.expect(now)
+        assert estimator.correct(sighting(body, now)), f"{math.degrees(lead):.1f} degrees ahead"
+
+
 @pytest.mark.parametrize("cut", [0.0, 0.010, 0.0249, 0.025, 0.0251, 0.040, 0.060])
 def test_a_pivot_switch_is_allowed_its_slip_wherever_the_frames_fall(cut: float) -> None:
     field = FieldModel(0.05, 0.1)

@@ -11,7 +11,7 @@ import pytest
 from control.arbiter import PREDICT_FOR
 from control.estimator import EstimatorSettings
 from control.field_model import FieldModel
-from control.model import Expectation, Frame, Measurement, Observation, Pose, Tracking
+from control.model import PIVOT_A, Expectation, Frame, Measurement, Observation, Pose, Tracking, swing
 from control.perception import NOT_BELIEVED, Perception
 
 PERIOD = 1.0 / 60.0
@@ -102,3 +102,32 @@ def test_after_a_loss_doubt_begins_anew(watching: Watching):
     assert watching.sees(FAR, 11) is not Tracking.PREDICTED
     assert watching.sees(FAR) is Tracking.LOCKED
     assert watching.sees(HERE, 5) is Tracking.PREDICTED
+
+
+def test_a_robot_that_stands_in_a_field_which_has_come_up_anew_teaches_nothing_about_its_play() -> None:
+    """The field comes up along its heading, so that it does not lead, whichever way it led before."""
+    play = math.radians(3.0)
+    script, field = Script(), FieldModel(0.05, 0.03)
+    perception = Perception(script, field, HELD_STILL, LENGTH, 2.0 * play)
+
+    def look(frames: range) -> None:
+        for index in frames:
+            field.advance(index * PERIOD)
+            led = field.heading_at(index * PERIOD - HELD_STILL.actuation_delay) - HERE.heading - play
+            if field.is_on and led > 0.0:
+                script.pose = swing(HERE, PIVOT_A, led, LENGTH)
+            perception.look(Frame(np.full((32, 32, 3), index % 251, np.uint8), index * PERIOD, index))
+
+    field.start(0.0, HERE.heading, PIVOT_A, 0.4, 0.001)
+    look(range(1, 10))
+    field.command(PIVOT_A, 0.4, 1.2, HERE.heading + 0.4)
+    look(range(10, 40))
+    assert perception.estimator.grip.is_tight
+    assert perception.backlash.half_width == pytest.approx(play, rel=0.1)
+    walked, here = perception.backlash.half_width, perception.pose_at(39 * PERIOD)[0]
+    assert here is not None
+    field.stop(39 * PERIOD)
+    look(range(40, 60))
+    field.start(59 * PERIOD, here.heading, PIVOT_A, 0.4, 0.001)
+    look(range(60, 160))
+    assert perception.backlash.half_width == walked

@@ -43,10 +43,11 @@ def test_the_covariance_moves_with_the_arc() -> None:
     random = np.random.default_rng(3)
     ours = PivotFilter(NOISE)
     ours.P = before = covariance(random)
-    ours.move(Pose(0.1, 0.2, 0.3), (0.004, -0.002), (1e-9, 1e-6))
+    ours.move(Pose(0.1, 0.2, 0.3), (0.004, -0.002), (1e-9, 2e-10, 3e-9, 4e-9, -5e-9, 1e-6))
+    noise = np.array([[1e-9, 2e-10, 3e-9], [2e-10, 4e-9, -5e-9], [3e-9, -5e-9, 1e-6]])
     turned = np.array([[1.0, 0.0, 0.002], [0.0, 1.0, 0.004], [0.0, 0.0, 1.0]])
     assert ours.x == pytest.approx([0.1, 0.2, 0.3])
-    after = turned @ before @ turned.T + np.diag([1e-9, 1e-9, 1e-6])
+    after = turned @ before @ turned.T + noise
     assert np.allclose(ours.P, after, rtol=1e-12, atol=0.0)
 
 

@@ -171,3 +171,13 @@ def test_a_robot_that_waits_may_still_choose_its_pivot() -> None:
 def test_a_sweep_that_is_none_is_a_named_fault(sweep: object) -> None:
     with pytest.raises(ControllerFault, match="saying"):
         rig_walker(Decision(PIVOT_A, 1.0, sweep=sweep)).step(moment(0.0))  # type: ignore[arg-type]
+
+
+def test_a_faster_path_that_is_chosen_on_the_way_is_followed_as_if_it_had_been_the_first() -> None:
+    slow, fast = (trajectories.build("line", {"speed_mm_s": speed}) for speed in (0.5, 6.0))
+    begun = walker("planner", 30.0, {}, slow, Pose(0.0, -0.04, math.pi / 2))
+    walk(begun, 5.3)
+    known, fresh = (walker("planner", 30.0, {}, fast, begun.pose) for _ in range(2))
+    known.controller = begun.controller
+    errors = [walk(one, 10.0).metrics.mean_error for one in (known, fresh)]
+    assert errors[0] == pytest.approx(errors[1], rel=0.2)

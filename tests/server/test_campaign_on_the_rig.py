@@ -186,3 +186,19 @@ async def test_a_campaign_is_interrupted_when_the_rig_is_closed(bench):
     outcome = await asyncio.wait_for(ended, PATIENCE)
     assert outcome.state == study.state == "interrupted"
     assert study.rows() == []
+
+
+async def test_a_path_that_a_campaign_walks_along_stays_until_it_has_ended(bench):
+    bow = {
+        "name": "of the campaign",
+        "points_mm": [[-3.0, -40.0], [3.0, -40.0], [0.0, -36.0]],
+        "speed_mm_s": 8.0,
+    }
+    assert (await bench.api.post("/trajectories", json=bow)).status_code == 201
+    study = bench.study(trajectory={"name": bow["name"]})
+    await bench.desk.begin(study, bench.desk.asked(consent=False, jobs=0))
+    address = f"/trajectories/{bow['name']}"
+    assert "the study 'short' walks along" in await bench.refused("DELETE", address)
+    assert "rename it when that has ended" in await bench.refused("PATCH", address, {"name": "another"})
+    await bench.desk.stop(study.id)
+    assert (await bench.api.delete(address)).status_code == 200

@@ -274,7 +274,12 @@ async def test_a_document_that_is_opened_by_itself_runs_nothing():
 
 
 async def test_only_the_scene_may_stand_in_a_frame_and_only_in_our_own():
-    for path, ancestors in (("/scene/", "'self'"), ("/", "'none'"), ("/docs", "'none'"), ("/report", "'none'")):
+    for path, ancestors in (
+        ("/scene/", "'self'"),
+        ("/", "'none'"),
+        ("/docs", "'none'"),
+        ("/report", "'none'"),
+    ):
         policy = (await request(url=OWN + path)).headers["content-security-policy"]
         assert f"frame-ancestors {ancestors}" in policy
 

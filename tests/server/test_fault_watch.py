@@ -31,7 +31,6 @@ def test_a_promise_is_kept_when_state_cause_and_times_are_as_promised() -> None:
     [
         (RigState.HELD, "camera", 0.104 + 1.1 * ALLOWANCE, 0.2),
         (RigState.HELD, "camera", 0.101, 0.105 + DECAY + 1.1 * ALLOWANCE),
-        (RigState.HELD, "lost", 0.101, 0.2),
         (RigState.FAULT, "camera", 0.101, 0.2),
     ],
 )
@@ -39,6 +38,11 @@ def test_a_promise_is_broken_by_each_of_them(
     became: RigState, code: str, noticed: float, zero: float
 ) -> None:
     assert reaction("camera_unplugged", became, zero).judge(line(code, noticed), 11.0) is Verdict.BROKEN
+
+
+def test_a_rig_that_stops_for_another_reason_has_shown_nothing_of_this_fault() -> None:
+    assert reaction("camera_unplugged", RigState.FAULT).judge(line("estop", 0.05), 11.0) is Verdict.OPEN
+    assert reaction("camera_unplugged", RigState.HELD).judge(line("stale", 0.05), 11.0) is Verdict.OPEN
 
 
 def test_current_that_never_goes_breaks_the_promise() -> None:

@@ -110,6 +110,19 @@ def test_a_call_ends_after_its_time_even_where_the_other_side_drips():
         dripping.join()
 
 
+def test_a_call_whose_time_was_over_before_anybody_could_be_reached_sends_nothing(ear, monkeypatch):
+    looked_up = socket.getaddrinfo
+
+    def slowly(*where, **how):
+        time.sleep(0.4)
+        return looked_up(*where, **how)
+
+    monkeypatch.setattr(socket, "getaddrinfo", slowly)
+    with pytest.raises(NotDelivered, match="has not answered within 0"):
+        Call(ear.url, 0.1).post({})
+    assert ear.heard == []
+
+
 @pytest.mark.parametrize(
     ("url", "why"),
     [

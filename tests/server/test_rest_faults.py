@@ -186,7 +186,7 @@ async def test_what_is_promised_stands_beside_what_the_rig_did(api):
     assert reaction["reason"]
     assert 0 < reaction["noticed_ms"] < 1000
     assert 0 < reaction["gone_ms"] < 1000
-    assert reaction["verdict"] in ("kept", "broken")
+    assert reaction["verdict"] in ("kept", "broken", "open")
 
 
 async def test_a_rig_at_rest_has_nothing_to_show(api):

@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 from test_rig_file_changes import bench
 
+from server import rig_file
 from server.rig_file import RigStore
 from server.rig_import import UnusableText, exported, listed, plan_of_text
 from server.rig_schema import rig_schema
@@ -44,6 +45,13 @@ def test_what_is_given_away_has_the_comments_and_no_secret(secretive):
     assert tomllib.loads(text)["notifications"]["webhook_url"] == "https://hooks.example.org/***"
 
 
+def test_a_secret_that_was_put_out_of_force_is_none_to_give_away_either(tmp_path):
+    path = tmp_path / "rig.toml"
+    path.write_text(f'# see https://example.org/\n[notifications]\n#webhook_url = "{KEY}" # the old one\n')
+    text = exported(RigStore(path))
+    assert text == '# see https://example.org/\n[notifications]\n#webhook_url = "***" # the old one\n'
+
+
 def test_a_rig_takes_its_own_file_back_with_its_secrets(secretive):
     plan = plan_of_text(secretive, exported(secretive))
     assert plan.changed == ()
@@ -78,6 +86,18 @@ def test_a_text_that_is_no_rig_file_says_what_is_wrong_in_it(tmp_path, text, wor
     with pytest.raises(UnusableText, match=words) as refusal:
         plan_of_text(RigStore(tmp_path / "rig.toml"), text)
     assert "secret" not in str(refusal.value)
+
+
+def test_another_kind_of_file_is_refused_without_looking_for_each_of_its_values_again(tmp_path, monkeypatch):
+    looked = []
+    monkeypatch.setattr(
+        rig_file, "_lines", lambda text, lines=rig_file._lines: looked.append(text) or lines(text)
+    )
+    text = "".join(f"package_{number} = 1\n" for number in range(300))
+    with pytest.raises(UnusableText, match=r"package_0: .*\(line 1\)(.|\n)* and 200 more$") as refusal:
+        plan_of_text(RigStore(tmp_path / "rig.toml"), text)
+    assert len(looked) == 1
+    assert len(str(refusal.value).splitlines()) < 110
 
 
 @pytest.mark.parametrize(

@@ -128,6 +128,7 @@ def test_a_file_that_is_none_of_ours_is_put_aside_and_told_of(paths, file, text)
 def test_bytes_that_are_no_text_are_put_aside(paths, file):
     file.write_bytes(b"\xff\xfe\x00{")
     assert len(paths.open(file)) == 1
+    assert file.with_name(NAME + ".unread").read_bytes() == b"\xff\xfe\x00{"
 
 
 async def test_the_points_of_a_file_are_read_and_a_wrong_line_is_named(api):

@@ -135,7 +135,9 @@ async def test_the_camera_is_sent_to_who_has_it_on_and_to_nobody_else(at):
 
 def robot_offset(jpeg, pose):
     """How far the red in the middle of a picture of 130 mm is from the robot, m."""
-    image = cv2.imdecode(np.frombuffer(jpeg, np.uint8), cv2.IMREAD_COLOR).astype(int)
+    picture = cv2.imdecode(np.frombuffer(jpeg, np.uint8), cv2.IMREAD_COLOR)
+    assert picture is not None
+    image = picture.astype(int)
     rows, columns = np.nonzero(image[..., 2] > 1.6 * image[..., :2].max(axis=2) + 30)
     step = 0.130 / (image.shape[0] - 1)
     x, y = columns.mean() * step - 0.065, 0.065 - rows.mean() * step

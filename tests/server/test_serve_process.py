@@ -8,17 +8,21 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
 
 from control.simulation.lockstep import RemoteBoard, Sample
+from tests.listening_ear import listening
 from tests.processes import Server, served, started
 
 TIME_TO_LIVE = 150
 """Of one drive command, in board milliseconds: the default of the rig file."""
 DEAD_MAN = 200
+GONE_WITHIN = 5.0
+"""The whole server is gone so soon after a signal, s (faults.md, row 16)."""
 LINE_AND_TICK = 5
 """Milliseconds for a command that was on its way, and for the tick that notices."""
 
@@ -131,6 +135,21 @@ def test_a_rig_file_that_cannot_be_used_says_where_and_why(tmp_path: Path, text:
     assert answer.returncode == 2
     assert complaint in answer.stderr
     assert "Traceback" not in answer.stderr
+
+
+def test_a_webhook_that_does_not_answer_a_test_holds_no_end_up(tmp_path: Path) -> None:
+    rig_file = tmp_path / "rig.toml"
+    with listening() as ear, ThreadPoolExecutor(1) as visitor:
+        ear.mute.set()
+        rig_file.write_text(f'[notifications]\nwebhook_url = "{ear.url}"\ntimeout_s = 30.0\n')
+        with served(tmp_path / "data", "--rig", str(rig_file)) as server:
+            tried = visitor.submit(server.post, "/notifications/test")
+            ear.wait_for(1)
+            began = time.monotonic()
+            server.process.send_signal(signal.SIGTERM)
+            server.process.wait(20)
+            assert time.monotonic() - began <= GONE_WITHIN
+        assert tried.exception() is not None
 
 
 def test_a_missing_rig_file_is_named(tmp_path: Path) -> None:

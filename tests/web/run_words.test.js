@@ -64,3 +64,7 @@ test("differences are what has changed, come or gone, but not the file itself", 
   );
   assert.deepEqual(differencesOf(then, then), []);
 });
+
+test("where the rig file lies and whom the rig calls are no settings of a run", () => {
+  assert.deepEqual(differencesOf({ name: "a" }, { name: "a", file: { path: "rig.toml" }, notifications: { timeout_s: 5 } }), []);
+});

@@ -1,6 +1,6 @@
 /** Charts with one cursor: of the last hour of the rig, or of whatever else a source tells. */
 import { useStore } from "../store.js";
-import { quantity } from "../units.js";
+import { quantity, wrapDegrees } from "../units.js";
 import { html, useEffect, useRef, useState } from "../view.js";
 import { createChart } from "./chart.js";
 import { CHARTS } from "./curves.js";
@@ -48,12 +48,15 @@ export function Chart({ title, note, curves, empty, source, span }) {
   `;
 }
 
+/** A curve of an angle goes on over the turn; in words it is that of the readings. */
+const onOneTurn = (value, unit) => (unit === "deg" && typeof value === "number" ? wrapDegrees(value) : value);
+
 /** A curve without words of its own stands beside the one it belongs to. */
 function Legend({ label, group, unit, colour, style, value, isHidden }) {
   return html`
     <span class="legend" data-colour=${colour} data-style=${style ?? "line"} data-hidden=${isHidden}>
       ${label && html`<button class="curve" type="button" aria-pressed=${!isHidden} title=${isHidden ? "Show this curve" : "Hide this curve"} onClick=${() => toggleCurve(group)}>${label}</button>`}
-      <b>${quantity(value, unit, DIGITS[unit])}</b>
+      <b>${quantity(onOneTurn(value, unit), unit, DIGITS[unit])}</b>
     </span>
   `;
 }

@@ -78,7 +78,7 @@ function axis(unit, index, token) {
     ...look(token),
     scale: unit,
     side: index === 0 ? 3 : 1,
-    size: 50,
+    size: 54,
     space: 28,
     grid: { show: index === 0, stroke: token("--line"), width: 1 },
     values: (_, splits) => splits.map((value) => tickText(value, unit, splits)),

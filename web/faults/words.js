@@ -36,7 +36,7 @@ export const VERDICTS = {
   watching: ["…", "Watching", ""],
   kept: ["✓", "Kept", ""],
   broken: ["✗", "Not kept", "A busy computer may be late; try it again, and tell the makers if it stays so."],
-  open: ["–", "Cannot say", "The promise is for a robot that walks, for the usual values, and for nobody who stops it meanwhile."],
+  open: ["–", "Cannot say", "The promise is for a robot that walks, for the usual values, and for a rig that nothing else stops meanwhile."],
   at_rest: ["–", "At rest", "The promise is for a robot that walks: start a run, then try it again."],
 };
 

@@ -81,7 +81,7 @@ export function watchHand() {
   addEventListener("pagehide", lost);
   document.addEventListener("visibilitychange", hidden);
   document.addEventListener("freeze", lost);
-  const deaf = heedStop(() => isHeld() && stopJog("Stopped."));
+  const deaf = heedStop(() => isHeld() && stopJog());
   return () => {
     removeEventListener("blur", lost);
     removeEventListener("pagehide", lost);

@@ -48,7 +48,7 @@ function Jog() {
             <${Pad} pivot=${pivot} end=${end} sense=${sense} sign=${key} words=${words} disabled=${obstacle !== ""} />`)}
         </div>`)}
       <${Rate} />
-      <p class=${refusal ? "jog-words refused" : "jog-words hint"} role="status">${refusal || obstacle || wordsOf(held)}</p>
+      <p class=${refusal && !obstacle ? "jog-words refused" : "jog-words hint"} role="status">${obstacle || refusal || wordsOf(held)}</p>
       <p class="hint">${gamepad ? `Gamepad: ${gamepad}. Hold LB or RB and tilt the left stick (A) or the right one (B).` : "Gamepad: press one of its buttons and it is found."}</p>
     </div>
   `;

@@ -2,14 +2,13 @@
 import { useKeys } from "../keys/bindings.js";
 import { useStore } from "../store.js";
 import { Badge } from "../log/badge.js";
-import { Runs } from "../runs/runs.js";
 import { html, useEffect, useRef } from "../view.js";
 import { lazy } from "./lazy.js";
 import { openTabOfAddress, showTab, useTab } from "./tab.js";
 
 /** [name, title, page, simulated: only on a simulated rig] */
 const TABS = [
-  { name: "runs", title: "Runs", Page: Runs },
+  { name: "runs", title: "Runs", Page: lazy(() => import("../runs/runs.js").then((module) => module.Runs), "the runs") },
   { name: "studies", title: "Studies", Page: lazy(() => import("../studies/studies.js").then((module) => module.Studies), "the studies") },
   { name: "calibration", title: "Calibration", Page: lazy(() => import("../calibration/overview.js").then((module) => module.Overview), "the calibration") },
   { name: "rig", title: "Rig", Page: lazy(() => import("../rig/rig.js").then((module) => module.Rig), "the rig’s settings") },

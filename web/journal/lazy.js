@@ -6,8 +6,9 @@ import { html, useEffect, useState } from "../view.js";
  *
  * @param {() => Promise<any>} load () => import("…").then((module) => module.Part)
  * @param {string} what "the studies": what is said to come, or not to have come
+ * @param {string} [place] class of what is said meanwhile, where the page has a place of its own for it
  */
-export function lazy(load, what) {
+export function lazy(load, what, place = "") {
   let Part = null;
   return function Lazy(props) {
     const [failure, setFailure] = useState(null);
@@ -33,16 +34,16 @@ export function lazy(load, what) {
       setTries(tries + 1);
     };
     if (Part !== null) return html`<${Part} ...${props} />`;
-    if (failure !== null) return html`<${Failure} what=${what} outdated=${failure.outdated} again=${again} />`;
-    return html`<p class="hint padded coming" role="status">Loading ${what}…</p>`;
+    if (failure !== null) return html`<${Failure} what=${what} place=${place} outdated=${failure.outdated} again=${again} />`;
+    return html`<p class=${`hint padded coming ${place}`}>Loading ${what}…</p>`;
   };
 }
 
-function Failure({ what, outdated, again }) {
+function Failure({ what, place, outdated, again }) {
   const [words, button, act] = outdated
     ? ["pivotrig was updated since this page was opened; this part fits only the new page.", "Reload the page", () => location.reload()]
     : [`The server did not send ${what}.`, "Try again", again];
-  return html`<p class="padded not-come" role="alert">${words} <button type="button" onClick=${act}>${button}</button></p>`;
+  return html`<p class=${`padded not-come ${place}`} role="alert">${words} <button type="button" onClick=${act}>${button}</button></p>`;
 }
 
 /** A server of another version has not this page's files: its modules must not be mixed with ours. */

@@ -28,7 +28,7 @@ export function Rig() {
   return html`
     <section class="rig-page" aria-label="Rig">
       <${Index} sections=${sections} open=${found ? "" : open} text=${text} />
-      <div class="rig-content">
+      <div class="rig-content" tabindex="0" role="group" aria-label="Settings">
         ${found ? html`<${Found} sections=${found} text=${text} />` : html`<${Page} name=${open} sections=${sections} />`}
       </div>
       <${ChangeBar} sections=${sections} />

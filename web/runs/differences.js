@@ -12,10 +12,11 @@ export function flattened(value, prefix = "") {
 
 /**
  * @param then as it was kept
- * @param {Record<string, any>} now as the server answers: `file` is about the rig file on the disk, not a setting
+ * @param {Record<string, any>} now as the server answers; `file` tells of the rig file on the disk and `notifications` of
+ *   whom it calls: neither makes a run what it is
  * @returns {{name: string, then: any, now: any}[]}
  */
-export function differencesOf(then, { file, ...now }) {
+export function differencesOf(then, { file, notifications, ...now }) {
   const [before, after] = [flattened(then), flattened(now)];
   return Object.keys({ ...after, ...before })
     .filter((name) => JSON.stringify(before[name] ?? null) !== JSON.stringify(after[name] ?? null))

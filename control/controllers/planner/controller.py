@@ -22,6 +22,7 @@ from control.controllers.planner.slip import Sighting, SlipWatch, SwitchSlip
 from control.gait import Gait, advance_of_sweep
 from control.gait_model import GaitModel
 from control.model import Pivot, Pose, opposite
+from control.trajectories.trajectory import Path
 
 MM2 = 1e-6
 EARLY_SHARES = (0.25, 0.5, 0.75, 1.0)
@@ -64,12 +65,15 @@ class Planner:
         self._parameters = parameters
         self._wanted = WantedHeading(parameters)
         self._gait: Gait | None = None
+        self._path: Path | None = None
         self._leg: Leg | None = None
         self._turned = 0.0
         self._watch = SlipWatch(SwitchSlip())
 
     def step(self, situation: Situation) -> Decision:
-        if situation.gait != self._gait:
+        if situation.trajectory is not self._path:
+            self._leg = None  # it ends by the clock of the path before
+        if situation.gait != self._gait or situation.trajectory is not self._path:
             self._prepare(situation)
         if situation.may_switch:
             self._arrive(situation.pose)
@@ -78,7 +82,7 @@ class Planner:
         return Decision(situation.pivot, self._rate(leg, situation), abs(leg.turn))
 
     def _prepare(self, situation: Situation) -> None:
-        """Tables for a gait that is new."""
+        """Tables for a gait or a path that is new: the path's pace says how long a slot is."""
         parameters, gait, model = self._parameters, situation.gait, situation.slip
         known = model or GaitModel(situation.length)
         shares = EARLY_SHARES if parameters.early_end else WHOLE
@@ -96,7 +100,7 @@ class Planner:
         self._search = Search(self._moves, parameters.horizon_slots, parameters.beam_width)
         if self._gait is None:
             self._watch = SlipWatch(SwitchSlip(known.out, known.forward_base, known.forward_per_sweep))
-        self._gait = gait
+        self._gait, self._path = gait, situation.trajectory
 
     def _arrive(self, pose: Pose) -> None:
         """A sweep has ended at `pose`: learn from it."""
