@@ -26,7 +26,7 @@ LOOPBACK_NAMES = frozenset({"localhost", "127.0.0.1", "[::1]"})
 OWN_SITES = frozenset({"same-origin", "none"})
 """Values of Sec-Fetch-Site that may change something; "same-site" includes other programs on this machine."""
 
-REFUSED_FEATURES = "camera=(), microphone=(), geolocation=(), payment=(), usb=(), serial=(), bluetooth=()"
+REFUSED_FEATURES = "camera=(), microphone=(), geolocation=(), payment=(), usb=(), serial=()"
 """What of the looking computer no page of ours ever asks for."""
 
 BODY_LIMIT = 1 << 20

@@ -7,7 +7,7 @@ import logging
 from collections.abc import Callable, Coroutine
 from typing import Any
 
-from starlette.websockets import WebSocket, WebSocketDisconnect
+from starlette.websockets import WebSocket, WebSocketDisconnect, WebSocketDisconnected
 
 from server.streams import StreamEnded, until_first_ends
 
@@ -47,7 +47,7 @@ async def serve(socket: WebSocket, *work: Coroutine[Any, Any, None]) -> None:
     """Run the senders of an accepted socket until the client goes, stops reading, or the server ends."""
     try:
         await until_first_ends(*work)
-    except WebSocketDisconnect:
+    except (WebSocketDisconnect, WebSocketDisconnected):  # the second: by a sender that comes after the first one's
         return
     except TimeoutError:
         log.info("a client of %s did not read for %g s and was dropped", socket.url.path, SEND_TIMEOUT)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from pathlib import Path
 
 from control.gait import Gait
 from control.runs import Choice, RunRequest, Selection
@@ -21,3 +22,12 @@ def walk(archive: Archive, label: str, sweep_deg: float, duration: float, trajec
     request = RunRequest(selection, duration=duration, label=label)
     Headless(build_machine(RigFile(), realtime=False), recorder=archive.recorder).run(id, request)
     return id
+
+
+def record(data: Path, label: str, sweep_deg: float, duration: float, trajectory: str = "circle") -> str:
+    """The same into a folder of data, with a recorder of its own, which has written all of it in the end."""
+    archive = Archive.open(data, patient=True)
+    try:
+        return walk(archive, label, sweep_deg, duration, trajectory)
+    finally:
+        archive.close()

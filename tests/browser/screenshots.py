@@ -16,12 +16,10 @@ from conftest import CHROMIUM_ARGS, TOUR_SEEN
 from dashboard_visit import ServedRig, becomes_true, rig_state
 from picture import colours, pixels
 from playwright.sync_api import Browser, Locator, Page, expect, sync_playwright
-from recorded_runs import walk
+from recorded_runs import record
 from rooms import Room
 from setup_visit import click_robot, open_setup
 from views import COMPUTED_WITHIN, button, tab_of
-
-from server.archive import Archive
 
 PICTURES = Path(__file__).parent / "pictures"
 QUALITY = 86
@@ -126,9 +124,9 @@ def replay(studio: Studio) -> None:
     with studio.window(DESK) as page:
         page.evaluate("ids => void (location.hash = `#replay=${ids}`)", ",".join(studio.runs[:2]))
         time = page.get_by_role("slider", name="Time in the recording")
-        time.press("PageUp")
-        for _ in range(8):
-            time.press("ArrowRight")
+        button(page, "Pause").click()  # it plays as soon as it is open
+        for key in ("Home", "PageUp", *["ArrowRight"] * 8):
+            time.press(key)
         page.wait_for_timeout(3000)
         scene_stands(page)
         save("replay", page)
@@ -200,9 +198,7 @@ def main(wanted: list[str]) -> None:
     PICTURES.mkdir(exist_ok=True)
     with contextlib.ExitStack() as stack:
         data = Path(stack.enter_context(tempfile.TemporaryDirectory()))
-        archive = Archive.open(data, patient=True)
-        ids = [walk(archive, label, sweep, 25.0, "eight") for label, sweep in RUNS]
-        archive.close()
+        ids = [record(data, label, sweep, 25.0, "eight") for label, sweep in RUNS]
         served = ServedRig(data)
         served.start()
         stack.callback(served.stop)

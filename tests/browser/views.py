@@ -10,10 +10,8 @@ from pathlib import Path
 
 from dashboard_visit import ServedRig, rig_state
 from playwright.sync_api import Locator, Page, expect
-from recorded_runs import walk
+from recorded_runs import record
 from setup_visit import open_setup, panel
-
-from server.archive import Archive
 
 TABS = ("Runs", "Studies", "Calibration", "Rig", "Log", "Faults")
 STEPS = ("Camera", "Colour", "Lens", "Plane", "Robot")
@@ -31,9 +29,7 @@ class House:
 
     @classmethod
     def furnished(cls, data: Path) -> House:
-        archive = Archive.open(data, patient=True)
-        runs = [walk(archive, "narrow sweeps", 30.0, 3.0), walk(archive, "wide sweeps", 45.0, 2.0)]
-        archive.close()
+        runs = [record(data, "narrow sweeps", 30.0, 3.0), record(data, "wide sweeps", 45.0, 2.0)]
         rig = ServedRig(data)
         rig.start()
         axis = {"of": "gait.sweep_deg", "values": [20, 30]}

@@ -5,8 +5,11 @@ import time
 
 import httpx
 import pytest
+from starlette.websockets import WebSocket
 from websockets.exceptions import ConnectionClosed
 
+from server.api.sockets import Line
+from server.api.sockets import serve as serve_socket
 from server.app import create_app
 from server.archive import Archive
 from server.assembly import build_machine
@@ -197,3 +200,22 @@ async def test_the_end_comes_soon_with_every_kind_of_viewer_and_leaves_no_task_o
             await asyncio.sleep(0.01)
     with pytest.raises(OSError, match="refused"):
         socket.create_connection(("127.0.0.1", at.port), timeout=1.0)
+
+
+async def test_a_client_that_goes_while_several_things_are_sent_to_it_ends_its_socket_quietly():
+    for _ in range(20):  # which sender's error is told depends on chance
+        socket = socket_of_a_client_that_has_gone()
+        await socket.accept()
+        line = Line(socket)
+        await serve_socket(socket, line.send_text("a tick"), line.send_text("an event"))
+
+
+def socket_of_a_client_that_has_gone():
+    async def receive():
+        return {"type": "websocket.connect"}
+
+    async def send(message):
+        if message["type"] != "websocket.accept":
+            raise OSError("the connection is closed")
+
+    return WebSocket({"type": "websocket", "path": "/", "headers": []}, receive, send)

@@ -19,20 +19,19 @@ export function NumberEntry(props) {
   };
   return html`
     <span class="entry stepped">
-      <${Step} sign="−" label=${`${form.title}: less`} move=${() => move(-1)} />
+      <${Step} sign="−" move=${() => move(-1)} />
       <input id=${id} type="text" inputmode="decimal" autocomplete="off" value=${text} placeholder=${form.placeholder ?? ""}
         aria-invalid=${invalid} aria-describedby=${describedBy}
         onInput=${(event) => type(event.target.value)} onBlur=${settle} onKeyDown=${press} />
       ${unit && html`<span class="unit">${unit}</span>`}
-      <${Step} sign="+" label=${`${form.title}: more`} move=${() => move(1)} />
+      <${Step} sign="+" move=${() => move(1)} />
     </span>
     ${form.usual && html`<${Slider} ...${props} put=${put} />`}
   `;
 }
 
-/** For the mouse and the finger: the keyboard has the arrows, so Tab goes past. */
-const Step = ({ sign, label, move }) =>
-  html`<button class="step-by" type="button" tabindex="-1" aria-label=${label} onClick=${move}>${sign}</button>`;
+/** For the mouse and the finger alone: the keyboard has the arrows, and who hears the page has the field itself. */
+const Step = ({ sign, move }) => html`<button class="step-by" type="button" tabindex="-1" aria-hidden="true" onClick=${move}>${sign}</button>`;
 
 /** Over the usual part of the range; the entry takes the rest. */
 function Slider({ form, value, put }) {

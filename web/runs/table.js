@@ -70,7 +70,7 @@ const Cell = ({ name, content }) => html`<td role="cell" data-column=${name} dat
 function Name({ run, open }) {
   const tags = run.tags ?? [];
   return html`
-    <button class="run-name" type="button" id=${rowId(run.id)} aria-expanded=${open} title=${run.label ? run.id : undefined} onClick=${() => toggleDetails(run.id)}>
+    <button class="run-name" type="button" id=${rowId(run.id)} aria-expanded=${open} title=${run.label ? `${run.label}, ${run.id}` : run.id} onClick=${() => toggleDetails(run.id)}>
       ${nameOf(run)}
     </button>
     ${tags.length > 0 && html`<span class="run-tags" title=${tags.join(", ")}>${tags.join(" · ")}</span>`}
