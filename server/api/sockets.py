@@ -47,7 +47,7 @@ async def serve(socket: WebSocket, *work: Coroutine[Any, Any, None]) -> None:
     """Run the senders of an accepted socket until the client goes, stops reading, or the server ends."""
     try:
         await until_first_ends(*work)
-    except (WebSocketDisconnect, WebSocketDisconnected):  # the second: by a sender that comes after the first one's
+    except (WebSocketDisconnect, WebSocketDisconnected):  # the second: told to a sender after the first one
         return
     except TimeoutError:
         log.info("a client of %s did not read for %g s and was dropped", socket.url.path, SEND_TIMEOUT)

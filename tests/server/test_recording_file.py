@@ -251,7 +251,7 @@ def test_the_rig_file_inside_gives_the_same_rig_again(walked, tmp_path):
     settings = attachment(walked, "settings.json")
     (tmp_path / "rig.toml").write_text(settings["rig_toml"])
     again = load_rig_file(tmp_path / "rig.toml")
-    assert again.to_public() == settings["rig"]
+    assert again.to_recorded() == settings["rig"]
 
 
 def test_the_outcome_is_that_of_the_catalogue(walked):

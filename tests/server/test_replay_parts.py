@@ -15,6 +15,7 @@ from server.settings_in_si import coil_set
 TICK = {
     "pose": {"x_mm": 10.0, "y_mm": -20.0, "heading_deg": 90.0},
     "command": {"pivot": -1},
+    "reference": {"x_mm": 12.0, "y_mm": -18.0},
     "body_tilt_deg": 5.0,
     "currents_A": [1.0, None, -0.5],
 }
@@ -102,6 +103,7 @@ def test_a_recorded_robot_stands_in_the_scene_where_its_tick_says():
     robot = robot_of(TICK, course(), 3.0)
     assert robot.pose is not None
     assert (robot.pose.x, robot.pose.y, robot.pose.heading) == pytest.approx((0.01, -0.02, math.pi / 2))
+    assert robot.target == pytest.approx((0.012, -0.018))
     assert robot.pivot == -1
     assert robot.body_tilt == pytest.approx(math.radians(5.0))
     assert len(robot.trail) == 4
@@ -109,6 +111,7 @@ def test_a_recorded_robot_stands_in_the_scene_where_its_tick_says():
 
 def test_a_robot_that_is_not_known_yet_is_not_shown():
     assert robot_of(None, course(), 3.0).pose is None
+    assert robot_of({**TICK, "reference": None}, course(), 3.0).target is None
     assert robot_of({**TICK, "pose": None}, course(), 3.0).pose is None
     assert (
         robot_of({**TICK, "pose": {"x_mm": None, "y_mm": 1.0, "heading_deg": 2.0}}, course(), 3.0).pose
