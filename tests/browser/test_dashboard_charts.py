@@ -46,7 +46,7 @@ def tools(page: Page) -> Locator:
 
 
 def chart(page: Page, title: str) -> Locator:
-    return page.get_by_role("img", name=re.compile(f"^{title} (over|of|up)"))
+    return page.get_by_role("img", name=re.compile(f"^{title} (over the last|of the part|up to)"))
 
 
 def drag_across(page: Page, place: Locator) -> None:
