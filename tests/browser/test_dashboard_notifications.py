@@ -68,7 +68,7 @@ def test_nothing_is_asked_for_before_a_click_and_only_who_is_away_is_told(
     page.evaluate("window.away = true")
     mend(workshop)
     fault(workshop)
-    page.wait_for_function("window.shown.length > 0")
+    eventually(lambda: page.evaluate("window.shown.length") > 0, "a notification")
     assert page.evaluate("window.shown[0]").startswith("Fault – The paper's rig: ")
     page.evaluate("window.away = false")
     mend(workshop)
