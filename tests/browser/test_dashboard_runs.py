@@ -117,7 +117,7 @@ def test_a_run_is_found_looked_at_edited_and_taken_away(library: Library, visit:
     page.get_by_label("State").select_option("aborted")
     expect(names(page)).to_have_text(["old-007"])
     button(page, "Show all runs").click()
-    page.get_by_label("Search runs").fill("wet")
+    page.get_by_label("Search runs").fill("wet plate")
     expect(names(page)).to_have_text(["wet plate"])
 
     names(page).first.press("Enter")
