@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from axe import bring_axe, examined
 from dashboard_visit import OpenTab, Visit
 from playwright.sync_api import Page
 from rooms import ROOMS, Room
@@ -15,13 +16,7 @@ from views import VIEWS, House, tab_of
 
 pytestmark = pytest.mark.exclusive
 
-REPOSITORY = Path(__file__).parents[2]
-AXE = REPOSITORY / ".stamps" / "javascript" / "node_modules" / "axe-core" / "axe.min.js"
 LAYOUT_FAULTS = (Path(__file__).parent / "layout_faults.js").read_text(encoding="utf-8")
-RULES = ("wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice")
-SERIOUS = ("serious", "critical")
-LEFT_OUT = "label-content-name-mismatch"
-"""An experiment of axe's that takes signs of keys and arrows, which are hidden from readers, for words of the label."""
 EXAMINED = (Room(1440, 900, "light"), Room(390, 844, "dark"))
 """Where axe looks in an everyday test: both schemes, both ends of the sizes."""
 
@@ -62,7 +57,7 @@ def visit(house: House, open_lasting_tab: OpenTab) -> Visit:
 def load(page: Page, house: House) -> None:
     enter(page, ROOMS[0])
     page.goto(house.rig.url)
-    page.evaluate(AXE.read_text(encoding="utf-8"))
+    bring_axe(page)
 
 
 @pytest.fixture(scope="module", params=VIEWS)
@@ -84,21 +79,6 @@ def enter(page: Page, room: Room) -> None:
     page.set_viewport_size({"width": room.width, "height": room.height})
     page.emulate_media(color_scheme=room.scheme, reduced_motion="reduce")
     page.evaluate("scrollTo(0, 0)")
-
-
-def examined(page: Page) -> list[str]:
-    """What axe finds to be serious: rule, place and its advice."""
-    found: dict[str, Any] = page.evaluate(
-        "([rules, leftOut]) => axe.run(document, { runOnly: rules, rules: { [leftOut]: { enabled: false } },"
-        " resultTypes: ['violations'], iframes: false })",
-        [RULES, LEFT_OUT],
-    )
-    return [
-        f"{rule['id']}: {node['html'][:150]} – {node['failureSummary'].splitlines()[-1].strip()}"
-        for rule in found["violations"]
-        if rule["impact"] in SERIOUS
-        for node in rule["nodes"]
-    ]
 
 
 def test_axe_finds_nothing_serious(page: Page, full: bool) -> None:

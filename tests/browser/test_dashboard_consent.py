@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from axe import bring_axe, examined
 from dashboard_visit import OpenTab, ServedRig, Visit, rig_state
 from playwright.sync_api import expect
 
@@ -34,6 +35,8 @@ def test_a_real_rig_is_armed_only_after_the_question(visit: Visit) -> None:
     arm.click()
     expect(question).to_contain_text("This rig is real: arming puts current into its coils.")
     expect(question.get_by_role("button", name="Not now")).to_be_focused()
+    bring_axe(page)
+    assert examined(page) == []
     question.get_by_role("button", name="Not now").click()
     expect(question).to_be_hidden()
     expect(page.get_by_role("alert")).to_have_count(0)

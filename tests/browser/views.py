@@ -155,6 +155,25 @@ def details_of_a_run(page: Page, _: House) -> Iterator[None]:
 
 
 @contextmanager
+def deletion(page: Page, house: House) -> Iterator[None]:
+    with details_of_a_run(page, house):
+        button(page.get_by_role("complementary"), "Delete…").click()
+        asked = page.get_by_role("dialog")
+        expect(button(asked, "Keep")).to_be_visible()
+        yield
+        button(asked, "Keep").click()
+
+
+@contextmanager
+def lost_connection(page: Page, house: House) -> Iterator[None]:
+    house.rig.stop()
+    expect(page.get_by_role("alert").filter(has_text="No connection").first).to_be_visible()
+    yield
+    house.rig.start()
+    expect(rig_state(page)).to_contain_text("disarmed", timeout=COMPUTED_WITHIN)
+
+
+@contextmanager
 def replay(page: Page, house: House) -> Iterator[None]:
     page.evaluate("ids => void (location.hash = `#replay=${ids}`)", ",".join(house.runs))
     expect(page.get_by_role("slider", name="Time in the recording")).to_be_visible()
@@ -189,6 +208,7 @@ VIEWS: dict[str, Callable[[Page, House], Opened]] = {
     "jogging": jogging,
     **{f"tab {name}": tab(name) for name in TABS},
     "details of a run": details_of_a_run,
+    "deletion": deletion,
     "study form": study_form,
     "open study": open_study,
     "replay": replay,
@@ -197,5 +217,6 @@ VIEWS: dict[str, Callable[[Page, House], Opened]] = {
     "keys": keys,
     "help": help_of_a_value,
     "tour": tour,
+    "lost connection": lost_connection,
 }
 """By name: views that can follow one another on one page."""
