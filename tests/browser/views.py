@@ -167,10 +167,12 @@ def deletion(page: Page, house: House) -> Iterator[None]:
 @contextmanager
 def lost_connection(page: Page, house: House) -> Iterator[None]:
     house.rig.stop()
-    expect(page.get_by_role("alert").filter(has_text="No connection").first).to_be_visible()
+    notice = page.get_by_role("alert").filter(has_text="No connection")
+    expect(notice).to_be_visible()
     yield
     house.rig.start()
-    expect(rig_state(page)).to_contain_text("disarmed", timeout=COMPUTED_WITHIN)
+    expect(notice).to_have_count(0, timeout=COMPUTED_WITHIN)
+    expect(rig_state(page)).to_contain_text("disarmed")
 
 
 @contextmanager
@@ -214,9 +216,9 @@ VIEWS: dict[str, Callable[[Page, House], Opened]] = {
     "replay": replay,
     **{f"setup {step}": setup(step) for step in STEPS},
     **{name: tool(name) for name in ("Draw a path", "Measure a distance")},
+    "lost connection": lost_connection,
     "keys": keys,
     "help": help_of_a_value,
     "tour": tour,
-    "lost connection": lost_connection,
 }
 """By name: views that can follow one another on one page."""
