@@ -16,6 +16,8 @@ from dataclasses import dataclass
 from starlette.datastructures import Headers, MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+from server.access.caller import KEY as CALLER
+from server.access.caller import Role, introduced
 from server.api.problems import Problem, internal_error
 from server.page_policy import content_policy
 
@@ -69,6 +71,7 @@ class Door:
     async def _http(self, scope: Scope, receive: Receive, send: Send) -> None:
         send = with_headers(scope, send)
         problem = self._stranger(scope) or self._unsafe(scope)
+        scope[CALLER] = introduced(scope, Role.ADMIN, "")
         if problem is None and scope["method"] not in SAFE_METHODS:
             body, problem = await self._body(scope, receive)
             receive = replaying(body, receive)
@@ -98,6 +101,7 @@ class Door:
         if self._stranger(scope) is not None:
             await send({"type": "websocket.close", "code": 1008, "reason": "not from here"})
             return
+        scope[CALLER] = introduced(scope, Role.ADMIN, "")
         await self._app(scope, capped(receive, send, self._limits.message), send)
 
     def _stranger(self, scope: Scope) -> Problem | None:

@@ -1,0 +1,1 @@
+"""Who asks: tokens, sessions, roles, and what each of them may do."""
