@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import logging
-from collections.abc import AsyncIterator, Collection
+from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,6 +14,8 @@ from fastapi import APIRouter, FastAPI
 from starlette.responses import FileResponse
 
 import web
+from server.access.guard import Guard
+from server.access.opening import Opening
 from server.api import (
     about,
     actions,
@@ -25,6 +27,7 @@ from server.api import (
     controllers,
     exports,
     faults,
+    login,
     manual,
     notifications,
     overview,
@@ -54,6 +57,7 @@ from server.exports.work import Workshop
 from server.fault_watch import FaultWatch
 from server.fresh_files import ALWAYS_ASK, FreshFiles
 from server.jog_order import JogOrder
+from server.login_page import add_login_page
 from server.notifier import Notifier
 from server.pictures import Pictures
 from server.replay.sessions import ReplaySessions
@@ -85,6 +89,7 @@ RESPONSES: dict[int | str, dict[str, Any]] = dict.fromkeys((409, 422), PROBLEM_S
 
 
 ROOMS = (
+    login,
     state,
     rig_file,
     selection,
@@ -115,13 +120,18 @@ ROOMS = (
 
 
 def create_app(
-    rig: Rig, archive: Archive, hosts: Collection[str] = (), changes: RigChanges | None = None
+    rig: Rig,
+    archive: Archive,
+    changes: RigChanges | None = None,
+    guard: Guard | None = None,
+    opening: Opening | None = None,
 ) -> FastAPI:
     """The application of one rig and of the archive that its runs go to; it closes both when it ends.
 
-    hosts: names it may be asked by, beside localhost and its address.
-    changes: the rig's file, when it has one that may be changed.
+    changes: the rig's file, when it has one that may be changed.  guard: knows who asks; without one, everybody is
+    let in.  opening: names it may be asked by, beside localhost and its address, and other sites that may use it.
     """
+    opening = opening or Opening()
     app = FastAPI(
         title="pivotrig",
         version=state.VERSION,
@@ -150,7 +160,8 @@ def create_app(
     app.state.notifier = Notifier(rig)
     app.state.study_json = StudyJson(app.state.studies)
     app.state.learning = Learning(app.state.studies)
-    app.add_middleware(Door, hosts=hosts)
+    app.state.guard = guard = guard or Guard()
+    app.add_middleware(Door, hosts=opening.hosts, guard=guard, origins=opening.origins)
     problems.install(app)
     add_routes(app)
     return app
@@ -230,6 +241,7 @@ def add_routes(app: FastAPI) -> None:
     files = app.state.page_files = FreshFiles(WEB_FOLDER)
     app.add_api_route("/", files.page, include_in_schema=False)
     app.add_api_route("/docs", docs, include_in_schema=False)
+    add_login_page(app, WEB_FOLDER)
     add_scene_routes(app)
     app.mount("/static", files)
 

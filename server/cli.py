@@ -6,11 +6,12 @@ Exit status: 0 done, 1 failed, 2 wrong usage, 3 the rig refused or faulted.
 from __future__ import annotations
 
 import sys
+from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from server.commands import firmware
+from server.commands import firmware, token
 from server.commands.doctor import doctor
 from server.commands.outcome import (
     FAILED,
@@ -37,6 +38,7 @@ app = typer.Typer(
 
 
 app.add_typer(firmware.app, name="firmware")
+app.add_typer(token.app, name="token")
 app.command()(doctor)
 app.command()(reproduce)
 app.command()(run)
@@ -92,21 +94,44 @@ def serve(
     rig: RigOption = None,
     plugin: PluginOption = None,
     host: Annotated[
-        str, typer.Option(help="Address to listen on; loopback only in this version.")
+        str, typer.Option(help="Address to listen on; any but loopback demands a token.")
     ] = "127.0.0.1",
     port: Annotated[int, typer.Option(min=0, max=65535, help="0 picks a free port.")] = 8000,
     data: DataOption = None,
     open_browser: Annotated[bool, typer.Option("--open", help="Open the dashboard in the browser.")] = False,
+    demand_token: Annotated[
+        bool, typer.Option("--demand-token", help="Ask for a token on loopback, too.")
+    ] = False,
+    allow_host: Annotated[
+        list[str] | None, typer.Option(help="Another name that the rig is asked by; may be repeated.")
+    ] = None,
+    allow_origin: Annotated[
+        list[str] | None, typer.Option(help="Another site whose pages may use the rig; may be repeated.")
+    ] = None,
+    proxy: Annotated[
+        list[str] | None, typer.Option(help="Address of a proxy that may speak for others; may be repeated.")
+    ] = None,
+    tls_cert: Annotated[Path | None, typer.Option(help="Certificate for https, PEM.")] = None,
+    tls_key: Annotated[Path | None, typer.Option(help="Its key, PEM, without a password.")] = None,
 ) -> None:
     """Open the rig and serve its dashboard."""
     check_environment()
     load_plugins(plugin)
     store = open_rig_store(rig, data)
+    from server.access.opening import Opening
     from server.serving import Place, ServeError, serve_rig
 
+    opening = Opening(
+        tuple(allow_host or ()),
+        tuple(allow_origin or ()),
+        tuple(proxy or ()),
+        tls_cert,
+        tls_key,
+        demand_token,
+    )
     as_run = RigFile.as_simulated if sim else _as_it_is
     try:
-        serve_rig(store, as_run, Place(host, port), data_folder(data), open_browser)
+        serve_rig(store, as_run, Place(host, port, opening=opening), data_folder(data), open_browser)
     except ServeError as error:
         raise fail(str(error), FAILED) from error
 
