@@ -96,7 +96,7 @@ def leaves(app):
         for each in contexts() if contexts else [route]:
             original = getattr(each, "original_route", None) or each
             if isinstance(original, WebSocketRoute):
-                yield filled(each.path or original.path), None
+                yield filled((getattr(each, "starlette_route", None) or each).path), None
             elif isinstance(each, Mount):
                 yield each.path + "/main.js", {"GET"}
             else:
