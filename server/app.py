@@ -29,6 +29,7 @@ from server.api import (
     faults,
     login,
     manual,
+    metrics,
     notifications,
     overview,
     ports,
@@ -70,6 +71,11 @@ from server.scene.viewers.known import Viewers
 from server.studies.desk import StudyDesk
 from server.studies.learning import Learning
 from server.upkeep import Upkeep
+from server.watching.exposition import Exposition
+from server.watching.health import Pulse
+from server.watching.log import log_event
+from server.watching.supervisor import Supervisor
+from server.watching.tally import ClientTally, Counting, EventTally, RigTally
 
 if TYPE_CHECKING:
     from server.archive import Archive
@@ -160,17 +166,30 @@ def create_app(
     app.state.notifier = Notifier(rig)
     app.state.study_json = StudyJson(app.state.studies)
     app.state.learning = Learning(app.state.studies)
+    app.state.ticks = RigTally()
+    app.state.pulse = Pulse(rig, app.state.ticks)
+    watch(app)
     app.state.guard = guard = guard or Guard()
     app.add_middleware(Door, hosts=opening.hosts, guard=guard, origins=opening.origins)
+    app.add_middleware(Counting, tally=app.state.clients)
     problems.install(app)
     add_routes(app)
     return app
+
+
+def watch(app: FastAPI) -> None:
+    """Count from now on what the figures are made of, and put the rig's events into the program's log."""
+    rig: Rig = app.state.rig
+    events, app.state.clients = EventTally(), ClientTally()
+    rig.event_log.listeners += [lambda event: events.add(str(event.severity), event.code), log_event]
+    app.state.exposition = Exposition(rig, app.state.ticks, events, app.state.clients, state.VERSION)
 
 
 @asynccontextmanager
 async def lifespan(app: FastAPI) -> AsyncIterator[None]:
     """The rig stops before everything else does, and whatever else fails: its stop zeroes the coils."""
     rig, scene, changes = app.state.rig, app.state.scene, app.state.rig_changes
+    supervisor = Supervisor(app.state.pulse)
     archive, upkeep = app.state.archive, Upkeep(app.state.archive, rig)
     try:
         await rig.start()
@@ -185,8 +204,12 @@ async def lifespan(app: FastAPI) -> AsyncIterator[None]:
         await app.state.page_files.version()
         if changes is not None:
             changes.start()
-        yield
+        app.state.pulse.begin()
+        with rig.watched(app.state.ticks.follow):
+            supervisor.start()
+            yield
     finally:
+        await supervisor.stop()
         try:
             await end_rig(app)
         finally:
@@ -241,6 +264,7 @@ def add_routes(app: FastAPI) -> None:
     files = app.state.page_files = FreshFiles(WEB_FOLDER)
     app.add_api_route("/", files.page, include_in_schema=False)
     app.add_api_route("/docs", docs, include_in_schema=False)
+    app.include_router(metrics.router)
     add_login_page(app, WEB_FOLDER)
     add_scene_routes(app)
     app.mount("/static", files)

@@ -6,6 +6,7 @@ Exit status: 0 done, 1 failed, 2 wrong usage, 3 the rig refused or faulted.
 from __future__ import annotations
 
 import sys
+from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
 
@@ -28,6 +29,19 @@ from server.commands.walk import run
 from server.data_folder import data_folder
 from server.environment import check_environment
 from server.settings import RigFile
+
+
+class LogFormat(StrEnum):
+    TEXT = "text"
+    JSON = "json"
+
+
+class LogLevel(StrEnum):
+    DEBUG = "debug"
+    INFO = "info"
+    WARNING = "warning"
+    ERROR = "error"
+
 
 app = typer.Typer(
     add_completion=False,
@@ -113,6 +127,11 @@ def serve(
     ] = None,
     tls_cert: Annotated[Path | None, typer.Option(help="Certificate for https, PEM.")] = None,
     tls_key: Annotated[Path | None, typer.Option(help="Its key, PEM, without a password.")] = None,
+    log_format: Annotated[LogFormat, typer.Option(help="Of the log's lines.")] = LogFormat.TEXT,
+    log_file: Annotated[
+        Path | None, typer.Option(help="Write the log there, rotated, and not to stderr.")
+    ] = None,
+    log_level: Annotated[LogLevel, typer.Option(help="The least that is logged.")] = LogLevel.WARNING,
 ) -> None:
     """Open the rig and serve its dashboard."""
     check_environment()
@@ -120,6 +139,7 @@ def serve(
     store = open_rig_store(rig, data)
     from server.access.opening import Opening
     from server.serving import Place, ServeError, serve_rig
+    from server.watching.log import LogChoice, LogFileError, logging_to
 
     opening = Opening(
         tuple(allow_host or ()),
@@ -130,9 +150,11 @@ def serve(
         demand_token,
     )
     as_run = RigFile.as_simulated if sim else _as_it_is
+    log = LogChoice(log_format is LogFormat.JSON, log_file, log_level.value)
     try:
-        serve_rig(store, as_run, Place(host, port, opening=opening), data_folder(data), open_browser)
-    except ServeError as error:
+        with logging_to(log):
+            serve_rig(store, as_run, Place(host, port, opening=opening), data_folder(data), open_browser)
+    except (ServeError, LogFileError) as error:
         raise fail(str(error), FAILED) from error
 
 

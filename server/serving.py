@@ -135,7 +135,7 @@ class _Server(uvicorn.Server):
         self._application = application
         config = uvicorn.Config(
             self._application,
-            log_level="warning",
+            log_config=None,
             access_log=False,
             ws_per_message_deflate=False,
             ws_max_size=MESSAGE_LIMIT,
