@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from enum import IntEnum
 from typing import Annotated
 from urllib.parse import parse_qs
 
@@ -12,19 +11,13 @@ from starlette.datastructures import Headers
 from starlette.requests import HTTPConnection
 from starlette.types import Scope
 
+from server.access.roles import Role
+
 NAME_LENGTH = 60
 """Characters of a client's own name; more is cut."""
 
 KEY = "pivotrig.caller"
 """Where the door leaves the caller in the ASGI scope."""
-
-
-class Role(IntEnum):
-    """Each may do what the one before it may, and more."""
-
-    VIEWER = 1
-    OPERATOR = 2
-    ADMIN = 3
 
 
 @dataclass(frozen=True, slots=True)

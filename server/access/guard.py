@@ -18,8 +18,9 @@ from starlette.types import Scope
 
 from server.access.addresses import site_of
 from server.access.attempts import Attempts
-from server.access.caller import Caller, Role, introduced
+from server.access.caller import Caller, introduced
 from server.access.policy import is_open, role_needed
+from server.access.roles import Role
 from server.access.sessions import Session, Sessions
 from server.access.tokens import Tokens, digest_of
 from server.api.problems import Problem

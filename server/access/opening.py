@@ -10,8 +10,8 @@ from urllib.parse import urlsplit
 
 from server.access import tokens
 from server.access.addresses import is_loopback
-from server.access.caller import Role
 from server.access.guard import Guard
+from server.access.roles import Role
 
 HANDSHAKE = 5.0
 """Time for a TLS handshake, s; whoever takes longer takes a place that others need."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from server.access.caller import Role
+from server.access.roles import Role
 
 PREFIX = "/api/v1"
 SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})

@@ -7,7 +7,7 @@ from collections import OrderedDict
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from server.access.caller import Role
+from server.access.roles import Role
 from server.access.tokens import digest_of
 
 IDLE = 12 * 3600.0

@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from server.access.caller import Role
+from server.access.roles import Role
 from server.atomic_save import replace_file
 
 FILE = "tokens.json"

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from server.access import tokens
-from server.access.caller import Role
+from server.access.roles import Role
 from server.commands.outcome import FAILED, DataOption, console, fail
 from server.data_folder import data_folder
 

@@ -11,9 +11,9 @@ from websockets.exceptions import ConnectionClosed, InvalidStatus
 
 from server.access import tokens
 from server.access.attempts import FROM_ONE
-from server.access.caller import Role
 from server.access.guard import COOKIE, Guard
 from server.access.opening import Opening
+from server.access.roles import Role
 from server.access.tokens import Tokens
 from server.app import create_app
 from server.archive import Archive

@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from server.access import tokens
 from server.access.addresses import site_of
 from server.access.attempts import FROM_ALL, FROM_ONE, SITES, WINDOW, Attempts
-from server.access.caller import Role
 from server.access.policy import is_open, role_needed
+from server.access.roles import Role
 from server.access.sessions import IDLE, SESSIONS, Sessions
 from server.access.tokens import TokenFileError, Tokens, digest_of
 
