@@ -109,6 +109,10 @@ class RigLife:
         return self._log.entries
 
     @property
+    def event_log(self) -> EventLog:
+        return self._log
+
+    @property
     def announcements(self) -> Publisher[dict[str, Any]]:
         """What clients are told as it comes: events, runs, changes of the selection and of the rig."""
         return self._log.messages
