@@ -19,13 +19,14 @@ from control.coils import CoilSet
 from control.model import Frame
 from control.news import Announcement
 from control.runs import RunState, Selection
-from control.safety import Refused
+from control.safety import ENERGISED, Refused
 from control.simulation.faults.injection import Faults
 from control.snapshot import RigState, Snapshot
 from server.assembly import Machine, build_machine
 from server.custom_trajectories import CustomTrajectories
 from server.event_log import Event, EventLog, Told
 from server.exchange import Build
+from server.lease.attendance import Attendance, NoLease, Permit, free, permitted
 from server.occupation import Occupation
 from server.rig_thread import RigThread
 from server.run_list import RunList
@@ -82,6 +83,7 @@ class RigLife:
         self.updates: Publisher[Snapshot] = Publisher()
         self.custom_trajectories = CustomTrajectories()
         self.occupation = Occupation()
+        self.attendance: Attendance = NoLease()
 
     @property
     def machine(self) -> Machine:
@@ -231,9 +233,19 @@ class RigLife:
             self.frame = frame
         for note in self._machine.camera.take_notes():
             self._loop.announce(note.severity, "camera", note.message)
+        self._heed_absence()
         snapshot = self._tick(frame)
         self._show(snapshot)
         return snapshot
+
+    def _heed_absence(self) -> None:
+        """What nobody looks after does not go on, unless it belongs to the server: unattended runs and campaigns."""
+        loop = self._loop
+        if loop.state not in ENERGISED or loop.is_unattended or self.occupation.is_taken:
+            return
+        reason = self.attendance.absence(loop.state is RigState.RUNNING)
+        if reason:
+            loop.hold(reason, "operator")
 
     def _tick(self, frame: Frame | None) -> Snapshot:
         self._recording.heed(self._loop)
@@ -293,11 +305,14 @@ class RigLife:
 
     # Between two ticks ---------------------------------------------------------------------------
 
-    async def _ask(self, request: Callable[[], T]) -> T:
-        """Carry a request out between two ticks and publish what became of it; raises `Refused`."""
+    async def _ask(self, request: Callable[[], T], permit: Permit = free) -> T:
+        """Carry a request out between two ticks and publish what became of it; raises `Refused`.
+
+        permit: asked just before, on the rig's thread, where one command comes after the other.
+        """
         if self.failure is not None or self._lost:
             raise Refused(self.snapshot.reason)
-        answer = await self._thread.call(request, lambda: self.snapshot.reason)
+        answer = await self._thread.call(lambda: permitted(request, permit), lambda: self.snapshot.reason)
         with contextlib.suppress(Refused):  # a tick that hangs has been told of; the request is carried out
             self.snapshot = await self._thread.call(self._look_again, lambda: self.snapshot.reason)
         self._tell()
@@ -306,6 +321,6 @@ class RigLife:
     def _look_again(self) -> Snapshot:
         return self._tick(None)
 
-    async def between_ticks(self, work: Callable[[], T]) -> T:
+    async def between_ticks(self, work: Callable[[], T], permit: Permit = free) -> T:
         """Do something to the rig's parts on the thread that owns them; raises `Refused` when that hangs."""
-        return await self._ask(work)
+        return await self._ask(work, permit)

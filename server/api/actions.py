@@ -10,6 +10,7 @@ from pydantic import Field
 from server.api import ticks
 from server.api.access import TheRig
 from server.api.body import StrictRoute
+from server.api.operator import TheHand
 from server.api.schemas import Edge
 
 router = APIRouter(tags=["rig actions"], route_class=StrictRoute)
@@ -25,28 +26,28 @@ class ArmBody(Edge):
 
 
 @router.post("/arm")
-async def arm(rig: TheRig, body: ArmBody | None = None) -> dict[str, Any]:
+async def arm(rig: TheRig, hand: TheHand, body: ArmBody | None = None) -> dict[str, Any]:
     """Set the board's heading to the estimate and ramp the field up; needs a locked track."""
-    await rig.arm(consent=body is not None and body.consent)
-    return ticks.state(rig.snapshot)
+    await rig.arm(consent=body is not None and body.consent, permit=hand.require)
+    return ticks.state_of(rig)
 
 
 @router.post("/disarm")
 async def disarm(rig: TheRig) -> dict[str, Any]:
     """Zero the coils; a run ends."""
     await rig.disarm()
-    return ticks.state(rig.snapshot)
+    return ticks.state_of(rig)
 
 
 @router.post("/estop")
 async def estop(rig: TheRig) -> dict[str, Any]:
     """Zero the coils now, whatever else is going on. Always succeeds; a reset and a new arming lead back."""
     await rig.estop()
-    return ticks.state(rig.snapshot)
+    return ticks.state_of(rig)
 
 
 @router.post("/reset")
-async def reset(rig: TheRig) -> dict[str, Any]:
+async def reset(rig: TheRig, hand: TheHand) -> dict[str, Any]:
     """Leave the fault state, disarmed."""
-    await rig.reset()
-    return ticks.state(rig.snapshot)
+    await rig.reset(hand.require)
+    return ticks.state_of(rig)
