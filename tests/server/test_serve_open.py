@@ -50,7 +50,9 @@ def test_an_address_that_others_can_reach_asks_for_the_token_that_was_told_once(
 
 def test_with_a_certificate_the_rig_speaks_tls(tmp_path: Path):
     certificate, key = tmp_path / "rig.pem", tmp_path / "rig.key"
-    command = "openssl req -x509 -newkey rsa:2048 -nodes -days 2 -subj /CN=rig -addext subjectAltName=IP:127.0.0.1"
+    command = (
+        "openssl req -x509 -newkey rsa:2048 -nodes -days 2 -subj /CN=rig -addext subjectAltName=IP:127.0.0.1"
+    )
     subprocess.run([*command.split(), "-out", certificate, "-keyout", key], check=True, capture_output=True)
     tls = ("--demand-token", "--tls-cert", str(certificate), "--tls-key", str(key))
     with started("server", "serve", "--sim", "--port", "0", "--data", str(tmp_path), *tls) as (process, line):
