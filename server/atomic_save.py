@@ -25,10 +25,10 @@ def keep_previous(path: Path, text: str) -> None:
     _put(_written(path, text.encode("utf-8")), previous_of(path))
 
 
-def replace_file(path: Path, text: str) -> None:
-    """Save without keeping what was there before; raises OSError."""
+def replace_file(path: Path, text: str, mode: int | None = None) -> None:
+    """Save without keeping what was there before; raises OSError. mode: its permissions, else as they were."""
     path = path.resolve()
-    _put(_written(path, text.encode("utf-8")), path)
+    _put(_written(path, text.encode("utf-8"), mode), path)
     _sync_folder(path.parent)
 
 
@@ -63,14 +63,15 @@ class Staged:
         self._new.unlink(missing_ok=True)
 
 
-def _written(path: Path, content: bytes) -> Path:
-    """`content` in a synced file beside `path`, with its permissions."""
+def _written(path: Path, content: bytes, mode: int | None = None) -> Path:
+    """`content` in a synced file beside `path`, with its permissions or with those of `mode`."""
     new = path.with_name(f".{path.name}.{secrets.token_hex(4)}.new")
-    handle = os.open(new, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666)
+    handle = os.open(new, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666 if mode is None else mode)
     try:
         with open(handle, "wb") as file:
             file.write(content)
-            _adopt_permissions(path, handle)
+            if mode is None:
+                _adopt_permissions(path, handle)
             file.flush()
             os.fsync(handle)
     except OSError:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import hmac
 import json
-import os
+import re
 import secrets
 from collections.abc import Mapping
 from pathlib import Path
@@ -21,6 +21,9 @@ BYTES = 32
 OWNER_ONLY = 0o600
 LONGEST = 200
 """Characters of what may be a token at all; ours have 43."""
+
+DIGEST = re.compile("[0-9a-f]{64}")
+"""SHA-256, as it is kept."""
 
 Digests = Mapping[Role, str]
 
@@ -41,7 +44,7 @@ def load(path: Path) -> dict[Role, str]:
         return {}
     except (OSError, ValueError) as error:
         raise TokenFileError(
-            f"cannot read the tokens in {path}: {error}; make new ones with: pivotrig token make"
+            f"cannot read the tokens in {path}: {error}; remove it and make new ones with: pivotrig token make"
         ) from error
     if not isinstance(kept, dict) or not all(_is_entry(name, digest) for name, digest in kept.items()):
         raise TokenFileError(f"{path} does not hold tokens of pivotrig; remove it and make new ones")
@@ -49,7 +52,9 @@ def load(path: Path) -> dict[Role, str]:
 
 
 def _is_entry(name: str, digest: Any) -> bool:
-    return name.upper() in Role.__members__ and isinstance(digest, str) and len(digest) == 64
+    return (
+        name.upper() in Role.__members__ and isinstance(digest, str) and DIGEST.fullmatch(digest) is not None
+    )
 
 
 def save(path: Path, digests: Digests) -> None:
@@ -59,19 +64,9 @@ def save(path: Path, digests: Digests) -> None:
     )
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        _make_owners(path)
-        replace_file(path, text)
+        replace_file(path, text, OWNER_ONLY)
     except OSError as error:
         raise TokenFileError(f"cannot write the tokens to {path}: {error.strerror}") from error
-
-
-def _make_owners(path: Path) -> None:
-    """A file of the owner's alone stands in the place, whose permissions the new one then gets."""
-    handle = os.open(path, os.O_WRONLY | os.O_CREAT, OWNER_ONLY)
-    try:
-        os.fchmod(handle, OWNER_ONLY)
-    finally:
-        os.close(handle)
 
 
 def make(path: Path, role: Role) -> str:

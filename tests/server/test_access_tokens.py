@@ -190,3 +190,9 @@ def test_only_health_and_the_way_in_are_open():
         "/docs",
     ):
         assert not is_open(closed)
+
+
+def test_a_digest_that_is_none_lets_nobody_in(tmp_path):
+    path = tmp_path / tokens.FILE
+    path.write_text('{"admin": "' + "é" * 64 + '"}', encoding="utf-8")
+    assert tokens.Tokens(path).role_of("anything") is None

@@ -112,12 +112,6 @@ def test_a_port_in_use_is_named_and_nothing_starts(simulated: Server, tmp_path: 
     assert simulated.get("/health")["status"] == "ok"
 
 
-def test_an_address_that_others_can_reach_is_refused(tmp_path: Path) -> None:
-    answer = serve("--sim", "--host", "0.0.0.0", "--data", str(tmp_path))
-    assert answer.returncode == 1
-    assert "0.0.0.0 can be reached from outside" in answer.stderr
-
-
 @pytest.mark.parametrize(
     ("text", "complaint"),
     [
