@@ -1,0 +1,77 @@
+/** Who operates, as the server tells it, and what this page asks for: at any time one page or script commands the rig. */
+import { Problem, onRefusal, post, read, remove } from "../live/rest.js";
+import { signIn } from "../live/sign_in.js";
+import { keep, recalled } from "../memory.js";
+import { amend, get, say, set } from "../store.js";
+import { isAsking, newsOf, obstacleIn, whoOperates } from "./words.js";
+
+/** @typedef {import("../types").Operator} Operator */
+
+/** Where this browser remembers what its person is called. */
+const NAME = "operator";
+
+/** @returns {string} */
+export const rememberedName = () => recalled(NAME) ?? "";
+
+/** @param {import("../types").State} state */
+export const obstacleOf = ({ operator }) => obstacleIn(operator);
+
+let isByHand = false;
+
+/** The server tells of a change, greets, or answers. @param {Partial<Operator>} told */
+export function hearOfOperator(told) {
+  const before = get().operator;
+  const { you, you_may, holder, asking, lease_s, take_over_after_s } = { ...before, ...told };
+  const after = { you, you_may, holder, asking, lease_s, take_over_after_s, heardAt: performance.now() };
+  set({ operator: after });
+  const news = newsOf(before, after, isByHand);
+  if (news) say(news, "info", whoOperates(after) === "other" ? ASK : null);
+  if (whoOperates(before) !== "you" && whoOperates(after) === "you") introduce(after);
+}
+
+/** The first command takes a free lease without a name. @param {Operator} operator */
+function introduce({ holder }) {
+  const name = rememberedName();
+  if (name && holder?.name !== name) sendFor({ name });
+}
+
+export const loadOperator = () => carriedOut(async () => hearOfOperator(await read("/operator")));
+
+/** @param {() => Promise<unknown>} call */
+async function carriedOut(call) {
+  try {
+    await call();
+  } catch (problem) {
+    if (!(problem instanceof Problem)) throw problem;
+    if (problem.status !== 0) say(problem.message);
+  }
+}
+
+/** @param {Record<string, string>} body */
+const sendFor = (body) => carriedOut(async () => hearOfOperator((await post("/operator", body)) ?? {}));
+
+/** Takes control where it is free or due, asks for it otherwise. @param {{name?: string, note?: string}} words */
+export function takeControl({ name = rememberedName(), note } = {}) {
+  keep(NAME, name);
+  return sendFor({ ...(name && { name }), ...(note && { note }) });
+}
+
+/** Gives the lease back, or takes the question back. */
+export const release = () => handedOver(() => remove("/operator"));
+
+/** @param {"grant" | "refuse"} answer */
+export const answer = (answer) => handedOver(() => post("/operator", { answer }));
+
+/** @param {() => Promise<any>} call */
+async function handedOver(call) {
+  isByHand = true;
+  await carriedOut(async () => hearOfOperator((await call()) ?? {}));
+  isByHand = false;
+}
+
+const ASK = { words: "Ask for control", act: () => void takeControl() };
+
+onRefusal((problem) => {
+  if (problem.status === 401) signIn();
+  if (problem.status === 409 && problem.holder) say(problem.message, "info", isAsking(get().operator) ? null : ASK);
+});

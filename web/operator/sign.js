@@ -1,0 +1,45 @@
+/** In the bar: who operates. Pressed, it opens how to take control, give it back or ask for it. */
+import { lazy } from "../journal/lazy.js";
+import { useKeys } from "../keys/bindings.js";
+import { useStore } from "../store.js";
+import { html, useEffect, useRef, useState } from "../view.js";
+import { useNow } from "./now.js";
+import { silence, standing, whoOperates } from "./words.js";
+
+const Panel = lazy(() => import("./panel.js").then((module) => module.Panel), "who operates");
+
+export function OperatorSign() {
+  const operator = useStore((state) => state.operator);
+  const [open, setOpen] = useState(false);
+  const place = useRef(null);
+  const now = useNow(silence(operator, performance.now()) > 0);
+  useKeys("Getting around", [{ key: "o", words: "Who operates: take control, give it back, ask for it", act: () => setOpen(!open) }]);
+  useClosing(place, open, () => setOpen(false));
+  const [long, short] = standing(operator, now);
+  return html`
+    <div class="operator" ref=${place} data-who=${whoOperates(operator)} data-silent=${silence(operator, now) > 0}>
+      <button class="operator-sign" type="button" aria-expanded=${open} title=${long} onClick=${() => setOpen(!open)}>
+        <span class="when-wide">${long}</span><span class="when-narrow" aria-hidden="true">${short}</span>
+      </button>
+      ${open && html`<${Panel} close=${() => setOpen(false)} />`}
+    </div>
+  `;
+}
+
+/** A press or the focus elsewhere closes it, and so does Escape, which is STOP as well. @param {{current: any}} place @param {boolean} open @param {() => void} close */
+function useClosing(place, open, close) {
+  useEffect(() => {
+    if (!open) return undefined;
+    const leave = (/** @type {Event} */ event) => place.current.contains(event.target) || close();
+    const press = (/** @type {KeyboardEvent} */ event) => event.key === "Escape" && close();
+    addEventListener("pointerdown", leave, true);
+    addEventListener("focusin", leave);
+    addEventListener("keydown", press, true);
+    return () => {
+      removeEventListener("pointerdown", leave, true);
+      removeEventListener("focusin", leave);
+      removeEventListener("keydown", press, true);
+      if (place.current?.contains(document.activeElement) || document.activeElement === document.body) place.current?.querySelector("button").focus();
+    };
+  }, [open]);
+}
