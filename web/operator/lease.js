@@ -1,6 +1,5 @@
 /** Who operates, as the server tells it, and what this page asks for: at any time one page or script commands the rig. */
 import { Problem, onRefusal, post, read, remove } from "../live/rest.js";
-import { signIn } from "../live/sign_in.js";
 import { keep, recalled } from "../memory.js";
 import { amend, get, say, set } from "../store.js";
 import { isAsking, newsOf, obstacleIn, whoOperates } from "./words.js";
@@ -70,6 +69,16 @@ async function handedOver(call) {
 }
 
 const ASK = { words: "Ask for control", act: () => void takeControl() };
+
+let isLeaving = false;
+
+/** Where the server asks for a token, its own page takes it, and leads back here. */
+function signIn() {
+  if (isLeaving) return;
+  isLeaving = true;
+  addEventListener("pageshow", () => (isLeaving = false));
+  location.assign(`/login?next=${encodeURIComponent(location.pathname + location.search + location.hash)}`);
+}
 
 onRefusal((problem) => {
   if (problem.status === 401) signIn();

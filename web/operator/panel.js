@@ -2,8 +2,7 @@
 import { useStore } from "../store.js";
 import { html, useEffect, useId, useState } from "../view.js";
 import { loadOperator, release, rememberedName, takeControl } from "./lease.js";
-import { useNow } from "./now.js";
-import { Asking } from "./question.js";
+import { Asking, useNow } from "./question.js";
 import { isAsking, silence, standing, whoOperates } from "./words.js";
 
 const ABOUT = "One page or script at a time commands the rig; everybody may watch, stop, pause and disarm.";

@@ -1,9 +1,23 @@
 /** Under the bar: somebody asks for control, or this page does. It waits there, and takes the focus from nobody. */
 import { useStore } from "../store.js";
-import { html } from "../view.js";
+import { html, useEffect, useState } from "../view.js";
 import { answer, release, takeControl } from "./lease.js";
-import { useNow } from "./now.js";
 import { isAsking, nameOf, questionWords, standing, untilTakeOver, whoOperates } from "./words.js";
+
+const LOOK_MS = 250;
+
+/** A clock that goes while somebody looks at it. @param {boolean} goes @returns {number} performance.now(), a few times a second */
+export function useNow(goes) {
+  const [now, setNow] = useState(performance.now());
+  useEffect(() => {
+    if (!goes) return undefined;
+    const look = () => setNow(performance.now());
+    const timer = setInterval(look, LOOK_MS);
+    look();
+    return () => clearInterval(timer);
+  }, [goes]);
+  return goes ? Math.max(now, performance.now()) : performance.now();
+}
 
 export function Questions() {
   const operator = useStore((state) => state.operator);

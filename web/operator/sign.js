@@ -1,12 +1,10 @@
 /** In the bar: who operates. Pressed, it opens how to take control, give it back or ask for it. */
-import { lazy } from "../journal/lazy.js";
 import { useKeys } from "../keys/bindings.js";
 import { useStore } from "../store.js";
 import { html, useEffect, useRef, useState } from "../view.js";
-import { useNow } from "./now.js";
+import { Panel } from "./panel.js";
+import { useNow } from "./question.js";
 import { silence, standing, whoOperates } from "./words.js";
-
-const Panel = lazy(() => import("./panel.js").then((module) => module.Panel), "who operates");
 
 export function OperatorSign() {
   const operator = useStore((state) => state.operator);

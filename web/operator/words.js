@@ -14,7 +14,7 @@ const quoted = (note) => (note ? `: “${note}”` : "");
 export const whoOperates = ({ holder, you }) => (holder === null ? "nobody" : holder.id === you ? "you" : "other");
 
 /** @param {Operator} operator */
-export const isAsking = ({ asking, you }) => asking?.id === you;
+export const isAsking = ({ asking, you }) => asking !== null && asking.id === you;
 
 /** How long the holder has not been heard of, s; 0 while that says nothing. @param {Operator} operator @param {number} now performance.now() */
 export function silence({ holder, lease_s, heardAt }, now) {
