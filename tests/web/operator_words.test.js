@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 
-import { isAsking, newsOf, obstacleIn, questionWords, silence, standing, untilTakeOver } from "../../web/operator/words.js";
+import { isAsking, newsOf, obstacleIn, questionWords, silence, standing, standingWords, untilTakeOver } from "../../web/operator/words.js";
 
 const ANNA = { id: "a1", name: "Anna", note: "calibrating", kind: "page", since_s: 60, silent_s: 0.4 };
 const BEN = { id: "b2", name: "Ben", note: "", kind: "page", since_s: 3, silent_s: 0 };
@@ -11,18 +11,22 @@ const hers = { ...FREE, holder: ANNA };
 const mine = { ...FREE, holder: { ...BEN, id: "me" } };
 
 test("the bar names who operates and why, shortly where there is little room", () => {
-  assert.deepEqual(standing(FREE, 1000), ["Nobody operates", "Nobody"]);
-  assert.deepEqual(standing(mine, 1000), ["You operate", "You"]);
-  assert.deepEqual(standing(hers, 1000), ["Anna operates – calibrating", "Anna"]);
-  assert.deepEqual(standing({ ...FREE, holder: { ...BEN, name: "" } }, 1000), ["Another page operates", "Another page"]);
-  assert.deepEqual(standing({ ...FREE, holder: { ...BEN, name: "", kind: "script" } }, 1000), ["A script operates", "A script"]);
+  assert.deepEqual(standing(FREE, 1000), ["Nobody operates", "", "Nobody"]);
+  assert.deepEqual(standing(mine, 1000), ["You operate", "", "You"]);
+  assert.deepEqual(standing(hers, 1000), ["Anna operates", "calibrating", "Anna"]);
+  assert.equal(standing({ ...FREE, holder: { ...BEN, name: "" } }, 1000)[0], "Somebody operates");
+  assert.equal(standing({ ...FREE, holder: { ...BEN, name: "", kind: "script" } }, 1000)[0], "A script operates");
+});
+
+test("the same in one line", () => {
+  assert.deepEqual([FREE, mine, hers].map((operator) => standingWords(operator, 1000)), ["Nobody operates", "You operate", "Anna operates – calibrating"]);
 });
 
 test("a holder who is silent for longer than the lease is told to be, and for how long goes on by itself", () => {
   const silent = { ...hers, holder: { ...ANNA, silent_s: 3 } };
   assert.equal(silence(hers, 9000), 0);
   assert.equal(silence(silent, 3000), 5);
-  assert.deepEqual(standing(silent, 3000), ["Anna operates, silent for 5 s", "Anna, silent"]);
+  assert.equal(standingWords(silent, 3000), "Anna operates, silent for 5 s");
 });
 
 test("a command is in nobody's way while the lease is free or this page's own", () => {

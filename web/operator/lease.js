@@ -1,7 +1,7 @@
 /** Who operates, as the server tells it, and what this page asks for: at any time one page or script commands the rig. */
 import { Problem, onRefusal, post, read, remove } from "../live/rest.js";
 import { keep, recalled } from "../memory.js";
-import { amend, get, say, set } from "../store.js";
+import { dismiss, get, say, set } from "../store.js";
 import { isAsking, newsOf, obstacleIn, whoOperates } from "./words.js";
 
 /** @typedef {import("../types").Operator} Operator */
@@ -25,7 +25,9 @@ export function hearOfOperator(told) {
   set({ operator: after });
   const news = newsOf(before, after, isByHand);
   if (news) say(news, "info", whoOperates(after) === "other" ? ASK : null);
-  if (whoOperates(before) !== "you" && whoOperates(after) === "you") introduce(after);
+  if (whoOperates(before) === "you" || whoOperates(after) !== "you") return;
+  for (const { id, action } of get().messages) if (action === ASK) dismiss(id);
+  introduce(after);
 }
 
 /** The first command takes a free lease without a name. @param {Operator} operator */

@@ -3,7 +3,7 @@ import { useStore } from "../store.js";
 import { html, useEffect, useId, useState } from "../view.js";
 import { loadOperator, release, rememberedName, takeControl } from "./lease.js";
 import { Asking, useNow } from "./question.js";
-import { isAsking, silence, standing, whoOperates } from "./words.js";
+import { isAsking, silence, standingWords, whoOperates } from "./words.js";
 
 const ABOUT = "One page or script at a time commands the rig; everybody may watch, stop, pause and disarm.";
 
@@ -14,7 +14,7 @@ export function Panel({ close }) {
   useEffect(() => void loadOperator(), []);
   return html`
     <section class="operator-panel" aria-label="Control of the rig">
-      <p><b>${standing(operator, now)[0]}.</b></p>
+      <p><b>${standingWords(operator, now)}.</b></p>
       <p class="hint">${ABOUT}</p>
       ${operator.you_may === "view" ? html`<p>You came in to watch: an operator’s token is needed for more.</p>`
         : isAsking(operator) ? html`<${Asking} />` : html`<${Wish} operator=${operator} isSilent=${silence(operator, now) > 0} close=${close} />`}

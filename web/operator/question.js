@@ -2,7 +2,7 @@
 import { useStore } from "../store.js";
 import { html, useEffect, useState } from "../view.js";
 import { answer, release, takeControl } from "./lease.js";
-import { isAsking, nameOf, questionWords, standing, untilTakeOver, whoOperates } from "./words.js";
+import { isAsking, nameOf, questionWords, standingWords, untilTakeOver, whoOperates } from "./words.js";
 
 const LOOK_MS = 250;
 
@@ -23,7 +23,7 @@ export function Questions() {
   const operator = useStore((state) => state.operator);
   const mine = whoOperates(operator) === "you";
   return html`
-    <p class="unseen" aria-live="polite">${standing(operator, operator.heardAt)[0]}</p>
+    <p class="unseen" aria-live="polite">${standingWords(operator, operator.heardAt)}</p>
     ${mine && operator.asking && html`<${Asked} asking=${operator.asking} />`}
     ${!mine && isAsking(operator) && html`<div class="notice" data-severity="info" role="group" aria-label="Asking for control"><${Asking} /></div>`}
   `;

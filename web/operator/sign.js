@@ -4,7 +4,7 @@ import { useStore } from "../store.js";
 import { html, useEffect, useRef, useState } from "../view.js";
 import { Panel } from "./panel.js";
 import { useNow } from "./question.js";
-import { silence, standing, whoOperates } from "./words.js";
+import { silence, standing, standingWords, whoOperates } from "./words.js";
 
 export function OperatorSign() {
   const operator = useStore((state) => state.operator);
@@ -13,11 +13,12 @@ export function OperatorSign() {
   const now = useNow(silence(operator, performance.now()) > 0);
   useKeys("Getting around", [{ key: "o", words: "Who operates: take control, give it back, ask for it", act: () => setOpen(!open) }]);
   useClosing(place, open, () => setOpen(false));
-  const [long, short] = standing(operator, now);
+  const [who, more, short] = standing(operator, now);
   return html`
     <div class="operator" ref=${place} data-who=${whoOperates(operator)} data-silent=${silence(operator, now) > 0}>
-      <button class="operator-sign" type="button" aria-expanded=${open} title=${long} onClick=${() => setOpen(!open)}>
-        <span class="when-wide">${long}</span><span class="when-narrow" aria-hidden="true">${short}</span>
+      <button class="operator-sign" type="button" aria-expanded=${open} title=${standingWords(operator, now)} onClick=${() => setOpen(!open)}>
+        <span class="operator-who">${who}</span><span class="operator-short" aria-hidden="true">${short}</span>
+        <span class="operator-more">${more}</span>
       </button>
       ${open && html`<${Panel} close=${() => setOpen(false)} />`}
     </div>

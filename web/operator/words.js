@@ -5,7 +5,7 @@ import { quantity } from "../units.js";
 /** @typedef {{name: string, note?: string, kind?: string}} Somebody */
 
 /** @param {Somebody} somebody */
-export const nameOf = ({ name, kind }) => name || (kind === "script" ? "A script" : "Another page");
+export const nameOf = ({ name, kind }) => name || (kind === "script" ? "A script" : "Somebody");
 
 /** @param {string} [note] what somebody says of why */
 const quoted = (note) => (note ? `: “${note}”` : "");
@@ -22,14 +22,19 @@ export function silence({ holder, lease_s, heardAt }, now) {
   return holder.silent_s + (now - heardAt) / 1000;
 }
 
-/** For the bar of a wide page, and of a narrow one. @param {Operator} operator @param {number} now @returns {[long: string, short: string]} */
+/** And of why, or that nothing is heard of them. @param {Operator} operator @param {number} now @returns {[who: string, more: string, short: string]} short: in place of who */
 export function standing(operator, now) {
   const { holder } = operator;
-  if (holder === null) return ["Nobody operates", "Nobody"];
+  if (holder === null) return ["Nobody operates", "", "Nobody"];
   const silent_s = silence(operator, now);
-  const after = silent_s > 0 ? `, silent for ${quantity(silent_s, "s", 0)}` : holder.note && ` – ${holder.note}`;
-  if (whoOperates(operator) === "you") return [`You operate${after}`, "You"];
-  return [`${nameOf(holder)} operates${after}`, silent_s > 0 ? `${nameOf(holder)}, silent` : nameOf(holder)];
+  const more = silent_s > 0 ? `silent for ${quantity(silent_s, "s", 0)}` : holder.note;
+  return whoOperates(operator) === "you" ? ["You operate", more, "You"] : [`${nameOf(holder)} operates`, more, nameOf(holder)];
+}
+
+/** The same in one line: "Anna operates – calibrating", "Anna operates, silent for 5 s". @param {Operator} operator @param {number} now */
+export function standingWords(operator, now) {
+  const [who, more] = standing(operator, now);
+  return more ? `${who}${silence(operator, now) > 0 ? "," : " –"} ${more}` : who;
 }
 
 /** Why this page may not command the rig just now, "" when it may: a free lease is taken by the first command. @param {Operator} operator */
