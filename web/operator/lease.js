@@ -2,7 +2,7 @@
 import { Problem, onRefusal, post, read, remove } from "../live/rest.js";
 import { keep, recalled } from "../memory.js";
 import { dismiss, get, say, set } from "../store.js";
-import { isAsking, newsOf, obstacleIn, whoOperates } from "./words.js";
+import { isAsking, nameOf, newsOf, obstacleIn, whoOperates } from "./words.js";
 
 /** @typedef {import("../types").Operator} Operator */
 
@@ -23,11 +23,10 @@ export function hearOfOperator(told) {
   const { you, you_may, holder, asking, lease_s, take_over_after_s } = { ...before, ...told };
   const after = { you, you_may, holder, asking, lease_s, take_over_after_s, heardAt: performance.now() };
   set({ operator: after });
+  if (before.holder?.id !== holder?.id) for (const { id, action } of get().messages) if (action === ASK) dismiss(id);
   const news = newsOf(before, after, isByHand);
   if (news) say(news, "info", whoOperates(after) === "other" ? ASK : null);
-  if (whoOperates(before) === "you" || whoOperates(after) !== "you") return;
-  for (const { id, action } of get().messages) if (action === ASK) dismiss(id);
-  introduce(after);
+  if (whoOperates(before) !== "you" && whoOperates(after) === "you") introduce(after);
 }
 
 /** The first command takes a free lease without a name. @param {Operator} operator */
@@ -84,5 +83,9 @@ function signIn() {
 
 onRefusal((problem) => {
   if (problem.status === 401) signIn();
-  if (problem.status === 409 && problem.holder) say(problem.message, "info", isAsking(get().operator) ? null : ASK);
+  const { operator } = get();
+  if (problem.status !== 409 || !problem.holder || problem.holder.id === operator.you) return;
+  // The server's words are a script's; whoever says them on this page has these.
+  problem.message = `${nameOf(problem.holder)} operates the rig: nothing was done.`;
+  say(problem.message, "info", isAsking(operator) ? null : ASK);
 });

@@ -38,8 +38,8 @@ function Wish({ operator, isSilent, close }) {
   };
   return html`
     <form onSubmit=${send}>
-      <${Words} title="Your name" hint="others see it" value=${name} put=${setName} />
-      <${Words} title="What for" hint="calibrating" value=${note} put=${setNote} />
+      <${Words} title="Your name" hint="others see it" longest=${60} value=${name} put=${setName} />
+      <${Words} title="What for" hint="calibrating" longest=${200} value=${note} put=${setNote} />
       <div class="choice">
         ${who === "you" && html`<button type="button" onClick=${giveBack}>Release control</button>`}
         <button class=${who === "you" ? "" : "chief"} type="submit">${LABELS[who === "other" && isSilent ? "silent" : who]}</button>
@@ -50,15 +50,12 @@ function Wish({ operator, isSilent, close }) {
 
 const LABELS = { you: "Save", nobody: "Take control", other: "Ask for control", silent: "Take over" };
 
-/** What the server takes of each, characters. */
-const LONGEST = 60;
-
-/** @param {{title: string, hint: string, value: string, put: (text: string) => void}} props */
-function Words({ title, hint, value, put }) {
+/** @param {{title: string, hint: string, longest: number, value: string, put: (text: string) => void}} props longest: characters, as the server takes them */
+function Words({ title, hint, longest, value, put }) {
   const id = useId();
   return html`
     <div class="field"><label for=${id}>${title}</label>
-      <input id=${id} type="text" autocomplete="off" maxlength=${LONGEST} placeholder=${hint} value=${value}
+      <input id=${id} type="text" autocomplete="off" maxlength=${longest} placeholder=${hint} value=${value}
         onInput=${(/** @type {any} */ event) => put(event.target.value)} /></div>
   `;
 }
