@@ -225,6 +225,15 @@ class ControlLoop:
             raise Refused("there is no run to pause")
         self._hold(PAUSED, "info")
 
+    @property
+    def is_unattended(self) -> bool:
+        """A run goes on that needs nobody who looks after it."""
+        return self._walk is not None and self._walk.request.unattended
+
+    def hold(self, reason: str, code: str) -> None:
+        """Coils off for a cause outside the loop; a run is kept, and `resume` goes on. For an energised rig."""
+        self._hold(reason, "error", code)
+
     def rest(self, reason: str) -> None:
         """Coils off on an armed rig that has no run; `resume` brings the field back. Raises `Refused`."""
         if self._walk is not None or self._state is not RigState.ARMED:

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from uuid import uuid4
 
-from fastapi import APIRouter, FastAPI
+from fastapi import APIRouter, Depends, FastAPI
 from starlette.responses import FileResponse
 
 import web
@@ -27,6 +27,7 @@ from server.api import (
     faults,
     manual,
     notifications,
+    operator,
     overview,
     ports,
     problems,
@@ -54,6 +55,7 @@ from server.exports.work import Workshop
 from server.fault_watch import FaultWatch
 from server.fresh_files import ALWAYS_ASK, FreshFiles
 from server.jog_order import JogOrder
+from server.lease.desk import LeaseDesk
 from server.notifier import Notifier
 from server.pictures import Pictures
 from server.replay.sessions import ReplaySessions
@@ -110,6 +112,7 @@ ROOMS = (
     vision,
     notifications,
     about,
+    operator,
 )
 """One router a resource."""
 
@@ -138,7 +141,8 @@ def create_app(
     app.state.camera_calibration = CameraCalibration(rig)
     app.state.calibration_runs = CalibrationRuns(rig)
     app.state.colour_picker = ColourPicker(rig)
-    app.state.tick_text = TickText()
+    app.state.lease = rig.attendance = LeaseDesk(rig)
+    app.state.tick_text = TickText(app.state.lease.in_state)
     app.state.jog_order = JogOrder()
     app.state.fault_watch = FaultWatch(rig)
     app.state.viewers = Viewers()
@@ -169,6 +173,7 @@ async def lifespan(app: FastAPI) -> AsyncIterator[None]:
     try:
         upkeep.start()
         app.state.notifier.start()
+        app.state.lease.start()
         await app.state.pictures.start()
         await start_scene(scene)
         await app.state.page_files.version()
@@ -185,6 +190,7 @@ async def lifespan(app: FastAPI) -> AsyncIterator[None]:
                 await app.state.retracks.stop()
                 await app.state.learning.close()
                 await app.state.notifier.stop()
+                await app.state.lease.stop()
                 if changes is not None:
                     await changes.stop()
                 end_streams(app)
@@ -220,7 +226,7 @@ def end_streams(app: FastAPI) -> None:
 
 
 def add_routes(app: FastAPI) -> None:
-    api = APIRouter(prefix=PREFIX, responses=RESPONSES)
+    api = APIRouter(prefix=PREFIX, responses=RESPONSES, dependencies=[Depends(operator.listen)])
     for room in ROOMS:
         api.include_router(room.router)
     api.include_router(camera.sockets)

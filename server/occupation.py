@@ -46,6 +46,10 @@ class Occupation:
         finally:
             self._occupant = None
 
+    @property
+    def is_taken(self) -> bool:
+        return self._occupant is not None
+
     def require_none(self) -> None:
         """Raises `Refused` while somebody has the rig to itself."""
         occupant = self._occupant  # it may leave meanwhile, on its own thread

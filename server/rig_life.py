@@ -19,13 +19,14 @@ from control.coils import CoilSet
 from control.model import Frame
 from control.news import Announcement
 from control.runs import RunState, Selection
-from control.safety import Refused
+from control.safety import ENERGISED, Refused
 from control.simulation.faults.injection import Faults
 from control.snapshot import RigState, Snapshot
 from server.assembly import Machine, build_machine
 from server.custom_trajectories import CustomTrajectories
 from server.event_log import Event, EventLog, Told
 from server.exchange import Build
+from server.lease.attendance import Attendance, NoLease
 from server.occupation import Occupation
 from server.rig_thread import RigThread
 from server.run_list import RunList
@@ -82,6 +83,7 @@ class RigLife:
         self.updates: Publisher[Snapshot] = Publisher()
         self.custom_trajectories = CustomTrajectories()
         self.occupation = Occupation()
+        self.attendance: Attendance = NoLease()
 
     @property
     def machine(self) -> Machine:
@@ -227,9 +229,19 @@ class RigLife:
             self.frame = frame
         for note in self._machine.camera.take_notes():
             self._loop.announce(note.severity, "camera", note.message)
+        self._heed_absence()
         snapshot = self._tick(frame)
         self._show(snapshot)
         return snapshot
+
+    def _heed_absence(self) -> None:
+        """What nobody looks after does not go on, unless it belongs to the server: unattended runs and campaigns."""
+        loop = self._loop
+        if loop.state not in ENERGISED or loop.is_unattended or self.occupation.is_taken:
+            return
+        reason = self.attendance.absence(loop.state is RigState.RUNNING)
+        if reason:
+            loop.hold(reason, "operator")
 
     def _tick(self, frame: Frame | None) -> Snapshot:
         self._recording.heed(self._loop)

@@ -58,7 +58,8 @@ def introduced(scope: Scope, role: Role, principal: str) -> Caller:
     name = headers.get("x-client") or (asked[0] if scope["type"] == "websocket" else "")
     client = "".join(letter for letter in name if letter.isprintable()).strip()[:NAME_LENGTH]
     peer = scope.get("client")
-    return Caller(role, principal, peer[0] if peer else "", client, "sec-fetch-site" in headers)
+    from_page = "sec-fetch-site" in headers or "origin" in headers
+    return Caller(role, principal, peer[0] if peer else "", client, from_page)
 
 
 async def the_caller(connection: HTTPConnection) -> Caller:

@@ -28,25 +28,25 @@ class ArmBody(Edge):
 async def arm(rig: TheRig, body: ArmBody | None = None) -> dict[str, Any]:
     """Set the board's heading to the estimate and ramp the field up; needs a locked track."""
     await rig.arm(consent=body is not None and body.consent)
-    return ticks.state(rig.snapshot)
+    return ticks.state_of(rig)
 
 
 @router.post("/disarm")
 async def disarm(rig: TheRig) -> dict[str, Any]:
     """Zero the coils; a run ends."""
     await rig.disarm()
-    return ticks.state(rig.snapshot)
+    return ticks.state_of(rig)
 
 
 @router.post("/estop")
 async def estop(rig: TheRig) -> dict[str, Any]:
     """Zero the coils now, whatever else is going on. Always succeeds; a reset and a new arming lead back."""
     await rig.estop()
-    return ticks.state(rig.snapshot)
+    return ticks.state_of(rig)
 
 
 @router.post("/reset")
 async def reset(rig: TheRig) -> dict[str, Any]:
     """Leave the fault state, disarmed."""
     await rig.reset()
-    return ticks.state(rig.snapshot)
+    return ticks.state_of(rig)

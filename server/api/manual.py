@@ -61,4 +61,4 @@ async def manual(body: JogBody, request: Request, rig: TheRig) -> dict[str, Any]
     if body.hand is not None and body.number is not None:
         order_of(request).take(body.hand, body.number)
     await rig.jog(body.to_si())
-    return ticks.state(rig.snapshot)
+    return ticks.state_of(rig)

@@ -25,13 +25,14 @@ SHOWN_LENGTH = 80
 
 @dataclass(frozen=True, slots=True)
 class Problem:
-    """One refused request. errors: the offending fields, for a rejected body."""
+    """One refused request. errors: the offending fields, for a rejected body.  members: more of the document."""
 
     status: int
     title: str
     detail: str
     errors: tuple[Mapping[str, Any], ...] = ()
     headers: Mapping[str, str] = field(default_factory=dict)
+    members: Mapping[str, Any] = field(default_factory=dict)
 
     def body(self) -> dict[str, Any]:
         document: dict[str, Any] = {
@@ -42,7 +43,7 @@ class Problem:
         }
         if self.errors:
             document["errors"] = [dict(error) for error in self.errors]
-        return document
+        return {**document, **self.members}
 
     def response(self) -> Response:
         return JSONResponse(

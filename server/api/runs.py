@@ -76,14 +76,14 @@ async def pause(rig: TheRig) -> dict[str, Any]:
 async def resume(rig: TheRig) -> dict[str, Any]:
     """Go on from where the run was held; a rig that was held without a run is armed again (its state)."""
     await rig.resume_run()
-    return newest(rig) if rig.snapshot.run is not None else ticks.state(rig.snapshot)
+    return newest(rig) if rig.snapshot.run is not None else ticks.state_of(rig)
 
 
 def newest(rig: TheRig) -> dict[str, Any]:
     """The run that is on, or was the last one; the rig's state while the robot walks what is no run of its own."""
     walked = rig.snapshot.run
     if not rig.runs or (walked is not None and walked.id != rig.runs[0].id):
-        return ticks.state(rig.snapshot)
+        return ticks.state_of(rig)
     return run_json(rig.runs[0])
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import logging
-from collections.abc import Callable, Coroutine
+from collections.abc import Callable, Coroutine, Mapping
 from typing import Any
 
 from starlette.websockets import WebSocket, WebSocketDisconnect, WebSocketDisconnected
@@ -39,8 +39,13 @@ def nothing() -> None:
 
 async def listen(socket: WebSocket, heard: Callable[[], None] = nothing) -> None:
     """Until the client goes; calls `heard` for each of its messages."""
-    while (await socket.receive())["type"] != "websocket.disconnect":
-        heard()
+    await listen_to(socket, lambda _: heard())
+
+
+async def listen_to(socket: WebSocket, heard: Callable[[Mapping[str, Any]], None]) -> None:
+    """Until the client goes; calls `heard` with each of its messages."""
+    while (message := await socket.receive())["type"] != "websocket.disconnect":
+        heard(message)
 
 
 async def serve(socket: WebSocket, *work: Coroutine[Any, Any, None]) -> None:

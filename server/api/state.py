@@ -28,7 +28,7 @@ async def health() -> dict[str, str]:
 @router.get("/state")
 async def state(rig: TheRig) -> dict[str, Any]:
     """One snapshot of everything."""
-    return ticks.state(rig.snapshot)
+    return ticks.state_of(rig)
 
 
 @router.get("/events")

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterable
-from typing import Any
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING, Any
 
 from control.model import Measurement, Observation, Pose
 from control.snapshot import (
@@ -20,6 +20,9 @@ from control.snapshot import (
     Snapshot,
     Timing,
 )
+
+if TYPE_CHECKING:
+    from server.rig_life import RigLife
 
 MILLI = 1e3
 
@@ -41,8 +44,8 @@ def numbers(values: Iterable[float], factor: float = 1.0, digits: int = 4) -> li
     return [number(value * factor, digits) for value in values]
 
 
-def state(snapshot: Snapshot) -> dict[str, Any]:
-    """The fields of GET /state and of a tick."""
+def state(snapshot: Snapshot, operator: dict[str, Any] | None = None) -> dict[str, Any]:
+    """The fields of GET /state and of a tick. operator: who has the rig's lease."""
     return {
         "rig": snapshot.rig.value,
         "reason": snapshot.reason,
@@ -68,8 +71,13 @@ def state(snapshot: Snapshot) -> dict[str, Any]:
         "loop": loop(snapshot.timing),
         "link": link(snapshot.link),
         "recording": recording(snapshot.recording),
-        "operator": None,
+        "operator": operator,
     }
+
+
+def state_of(rig: RigLife) -> dict[str, Any]:
+    """The newest state of a rig."""
+    return state(rig.snapshot, rig.attendance.in_state())
 
 
 def robot(snapshot: Snapshot) -> dict[str, Any]:
@@ -221,12 +229,14 @@ def text(message: dict[str, Any]) -> str:
 class TickText:
     """The newest tick as JSON, made once for all clients that want it."""
 
-    def __init__(self) -> None:
+    def __init__(self, operator: Callable[[], dict[str, Any] | None]) -> None:
+        """operator: who has the rig's lease."""
+        self._operator = operator
         self._snapshot: Snapshot | None = None
         self._text = ""
 
     def of(self, snapshot: Snapshot) -> str:
         if snapshot is not self._snapshot:
-            self._text = text({"type": "tick", **state(snapshot)})
+            self._text = text({"type": "tick", **state(snapshot, self._operator())})
             self._snapshot = snapshot
         return self._text

@@ -16,10 +16,12 @@ from typing import Literal
 
 import msgspec
 from starlette.websockets import WebSocket, WebSocketDisconnect
-from websockets.asyncio.client import ClientConnection, connect
+from viser import ViserServer
+from websockets.asyncio.client import ClientConnection
 from websockets.exceptions import ConnectionClosed
 from websockets.typing import Subprotocol
 
+from server.scene.private_viser import connect_to
 from server.scene.viewers.known import Viewer
 from server.scene.viewers.stream import OwnStream, Stage
 from server.streams import Mailbox, until_first_ends
@@ -88,12 +90,12 @@ class Downlink:
 class SceneBridge:
     """Counts who is looking, and carries bytes between each browser and Viser.
 
-    port: where Viser listens on loopback.  on_change: called on the event loop when a viewer comes or goes.
+    viser: the scene's.  on_change: called on the event loop when a viewer comes or goes.
     stage: what there is to see.
     """
 
-    def __init__(self, port: Callable[[], int], on_change: Callable[[], None], stage: Stage) -> None:
-        self._port = port
+    def __init__(self, viser: Callable[[], ViserServer], on_change: Callable[[], None], stage: Stage) -> None:
+        self._viser = viser
         self._on_change = on_change
         self._stage = stage
         self.viewers = 0
@@ -104,13 +106,12 @@ class SceneBridge:
         if protocol is None:
             await socket.close(1002, "this is the 3D scene's own socket")
             return
-        async with connect(
-            f"ws://127.0.0.1:{self._port()}/",
+        async with connect_to(
+            self._viser(),
             subprotocols=[Subprotocol(protocol)],
             compression=None,
             max_size=None,
             max_queue=4,
-            proxy=None,
             close_timeout=1.0,
             ping_interval=None,
         ) as viser_socket:

@@ -8,6 +8,8 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any, Generic, Protocol, TypeVar
 
+from viser import ViserServer
+
 from server.scene.bridge import SceneBridge
 from server.scene.geometry import CM, SceneGeometry
 from server.scene.plate_pictures import Photograph, PlatePictures
@@ -53,7 +55,7 @@ class SceneFeed(Generic[T]):
         self._shown: View | None = None
         self.scene: Scene | None = None
         self.pictures = PlatePictures(self._thread, lambda: self.geometry, source.photograph)
-        self.bridge = SceneBridge(self._viser_port, self._viewers_changed, self)
+        self.bridge = SceneBridge(self._viser, self._viewers_changed, self)
 
     @property
     def geometry(self) -> SceneGeometry:
@@ -82,10 +84,10 @@ class SceneFeed(Generic[T]):
             await self._on_thread(self.scene.stop)
         self._thread.shutdown()
 
-    def _viser_port(self) -> int:
+    def _viser(self) -> ViserServer:
         if self.scene is None:
             raise RuntimeError("the scene has not been started")
-        return self.scene.port
+        return self.scene.server
 
     def _viewers_changed(self) -> None:
         if self.bridge.viewers:

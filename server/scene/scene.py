@@ -1,6 +1,6 @@
 """A rig in three dimensions, in Viser: coils to scale, the field, robots with their tilt, paths and trails.
 
-Viser listens on loopback only and is reached through `server.scene.bridge`. Nothing in it can act on the rig.
+Viser is reached through `server.scene.bridge` alone. Nothing in it can act on the rig.
 The scene's unit is the centimetre: Viser's near plane and lights suit lengths of 1 to 100.
 """
 
@@ -19,6 +19,7 @@ from control.coils import CoilPair
 from control.snapshot import Vector
 from server.scene.geometry import CM, SceneGeometry
 from server.scene.layers import root_of
+from server.scene.private_viser import private_viser
 from server.scene.robot import LINE_HEIGHT, LOOKS, Colour, Looks, RobotNodes, ShownRobot
 from server.scene.shapes import (
     ABOVE_ROBOT,
@@ -52,10 +53,10 @@ class View:
 
 
 def start_viser() -> viser.ViserServer:
-    """A quiet Viser on a free loopback port, which cannot be shared with the outside."""
+    """A quiet Viser that no other program can reach, and that cannot be shared with the outside."""
     rich.get_console().quiet = True  # Viser prints banners to stdout, which belongs to results
     logging.getLogger("websockets.server").setLevel(logging.WARNING)
-    server = viser.ViserServer(host="127.0.0.1", port=0, label="rig", verbose=False)
+    server = private_viser("rig")
     for message in (viser_messages.ShareUrlRequest, viser_messages.ShareUrlDisconnect):
         server._websock_server.unregister_handler(message)
     server.gui.configure_theme(show_logo=False, show_share_button=False)
@@ -96,10 +97,6 @@ class Scene:
         with self.server.atomic():
             self.server.scene.reset()
             self._build(geometry)
-
-    @property
-    def port(self) -> int:
-        return self.server.get_port()
 
     def stop(self) -> None:
         self.server.stop()

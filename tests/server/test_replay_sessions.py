@@ -17,6 +17,7 @@ from server.archive import Archive
 from server.assembly import build_machine
 from server.headless import Headless
 from server.rig import Rig
+from server.scene.private_viser import connect_to
 from server.settings import RigFile
 
 pytestmark = pytest.mark.anyio
@@ -239,12 +240,12 @@ async def test_a_replay_has_a_scene_of_its_own_with_both_robots(there):
             "B",
             "second",
         ]
-        port = sessions_of(there).find(session)._scene.scene.port
-        assert port != live.scene.port
+        ended = sessions_of(there).find(session)._scene.scene.server
+        assert ended.get_host() != live.scene.server.get_host()
         assert live.bridge.viewers == 0
     assert len(sessions_of(there)) == 0
     with pytest.raises(ConnectionRefusedError):
-        await asyncio.open_connection("127.0.0.1", port)
+        await connect_to(ended)
 
 
 async def test_a_scene_of_a_replay_follows_what_is_asked_for(there):
