@@ -20,7 +20,8 @@ from control.trajectories.trajectory import points_of
 from server.api.choices import selection_json
 from server.assembly import Machine
 from server.exchange import Build, Exchange, NoMachine, exchange, require_disarmed
-from server.rig_life import RigLife
+from server.lease.attendance import Permit, free
+from server.rig_life import RigLife, permitted
 from server.run_list import new_id
 from server.settings import RigFile
 from server.vision_settings import tracker_settings
@@ -55,10 +56,10 @@ class Rig(RigLife):
         self.selection = selection
         self.announcements.publish({"type": "rig", "selection": selection_json(selection), "by": by})
 
-    async def arm(self, *, consent: bool = False) -> None:
+    async def arm(self, *, consent: bool = False, permit: Permit = free) -> None:
         """consent: the operator agrees that current flows through real coils."""
         gait = self.selection.gait
-        await self._ask(lambda: self._loop.arm(gait, consent=consent))
+        await self._ask(lambda: self._loop.arm(gait, consent=consent), permit)
 
     async def disarm(self) -> None:
         self.occupation.stop("the operator disarmed the rig")
@@ -73,27 +74,31 @@ class Rig(RigLife):
             latch = self._ask(lambda: self._loop.latch_estop())
             await asyncio.wait_for(asyncio.shield(latch), ESTOP_ANSWER)
 
-    async def reset(self) -> None:
-        await self._ask(lambda: self._loop.reset())
+    async def reset(self, permit: Permit = free) -> None:
+        await self._ask(lambda: self._loop.reset(), permit)
 
-    async def jog(self, jog: Jog) -> None:
+    async def jog(self, jog: Jog, permit: Permit = free) -> None:
         self.occupation.require_none()
-        await self._ask(lambda: self._loop.jog(jog))
+        await self._ask(lambda: self._loop.jog(jog), permit)
 
-    async def start_run(self, request: RunRequest) -> Run:
+    async def start_run(self, request: RunRequest, permit: Permit = free) -> Run:
         self.occupation.require_none()
-        return await self.begin_run(request, self.occupation.require_none)
 
-    async def begin_run(self, request: RunRequest, permit: Callable[[], None]) -> Run:
-        """`start_run` for who has the rig to itself. permit: asked on the rig's thread; raises where it must not be."""
+        def may_begin() -> None:
+            permit()
+            self.occupation.require_none()
+
+        return await self.begin_run(request, may_begin)
+
+    async def begin_run(self, request: RunRequest, permit: Permit) -> Run:
+        """`start_run` for who has the rig to itself."""
         id = new_id()
         await asyncio.to_thread(self.check_recording)
-        await self._ask(lambda: self._start(id, request, permit))
+        await self._ask(lambda: self._start(id, request), permit)
         return self.runs.of(id)
 
-    def _start(self, id: str, request: RunRequest, permit: Callable[[], None]) -> None:
+    def _start(self, id: str, request: RunRequest) -> None:
         """On the rig's thread: the run is listed from the instant at which it may also end."""
-        permit()
         self._loop.start(id, request)
         run = Run(id, request, RunState.RUNNING, datetime.now(UTC))
         self._recording.begin(self._machine, run)
@@ -108,10 +113,10 @@ class Rig(RigLife):
         """Whether a run that is over is all in its recording and in the catalogue; from any thread."""
         return self._recording.is_complete(id)
 
-    async def change_run(self, change: Callable[[Selection], Selection]) -> Run:
+    async def change_run(self, change: Callable[[Selection], Selection], permit: Permit = free) -> Run:
         """`change` makes the new selection of the old one, so that two changes at once both count."""
         self.occupation.require_none()
-        id = await self._ask(lambda: self._change(change))
+        id = await self._ask(lambda: self._change(change), permit)
         return self.runs.of(id)
 
     def _change(self, change: Callable[[Selection], Selection]) -> str:
@@ -131,12 +136,12 @@ class Rig(RigLife):
     async def pause_run(self) -> None:
         await self._ask(lambda: self._loop.pause())
 
-    async def resume_run(self) -> None:
-        await self._ask(lambda: self._loop.resume())
+    async def resume_run(self, permit: Permit = free) -> None:
+        await self._ask(lambda: self._loop.resume(), permit)
 
-    async def follow(self, u: float, v: float) -> None:
+    async def follow(self, u: float, v: float, permit: Permit = free) -> None:
         """The operator says where in the picture (px) the robot is; raises `Refused` while it is driven."""
-        await self._ask(lambda: self._follow(u, v))
+        await self._ask(lambda: self._follow(u, v), permit)
 
     def _follow(self, u: float, v: float) -> None:
         if self._loop.state not in (RigState.DISARMED, RigState.HELD):
@@ -151,10 +156,10 @@ class Rig(RigLife):
         self._machine.settings = settings
         self._announce_settings()
 
-    async def retune(self, settings: RigFile) -> None:
+    async def retune(self, settings: RigFile, permit: Permit = free) -> None:
         """Settings of which only the robot's looks are new, for the tracker; raises `Refused` unless disarmed."""
         self.occupation.require_none()
-        await self._ask(lambda: self._retune(settings))
+        await self._ask(lambda: self._retune(settings), permit)
         self._announce_settings()
 
     def _retune(self, settings: RigFile) -> None:
@@ -166,20 +171,22 @@ class Rig(RigLife):
             self._loop.forget_robot()
         self._machine.settings = settings
 
-    async def rebuild(self, settings: RigFile) -> None:
+    async def rebuild(self, settings: RigFile, permit: Permit = free) -> None:
         """Put a machine with other settings in this one's place, between two ticks.
 
         Raises `Refused`, and then the rig is as it was, unless it is `NoMachine`.
         """
         self.occupation.require_none()
-        await asyncio.shield(asyncio.ensure_future(self._rebuild(settings)))
+        await asyncio.shield(asyncio.ensure_future(self._rebuild(settings, permit)))
 
-    async def _rebuild(self, settings: RigFile) -> None:
+    async def _rebuild(self, settings: RigFile, permit: Permit) -> None:
         if self.hangs:
             raise Refused(self.snapshot.reason)
         async with self._thread.turn(TURN_WITHIN):
             try:
-                exchange = await self._thread.begin(lambda: self._exchange(settings))
+                exchange = await self._thread.begin(
+                    lambda: permitted(lambda: self._exchange(settings), permit)
+                )
             except NoMachine as error:
                 self._lose_machine(str(error))
                 raise

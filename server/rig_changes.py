@@ -18,6 +18,7 @@ from control.safety import Refused
 from control.snapshot import RigState
 from server.atomic_save import previous_of
 from server.exchange import rehearse
+from server.lease.attendance import Permit, free
 from server.rig_file import Plan, RigFileError, RigStore, differences
 from server.rig_import import exported, listed, plan_of_text
 from server.settings import RigFile
@@ -97,20 +98,20 @@ class RigChanges:
             "overridden": list(differences(store.settings, self._as_run(store.settings))),
         }
 
-    async def patch(self, changes: Mapping[str, Any]) -> Change:
+    async def patch(self, changes: Mapping[str, Any], permit: Permit = free) -> Change:
         """Apply nested changes and save them; raises ValidationError, `RigFileError`, `Refused`."""
-        return await self.alter(lambda _: changes)
+        return await self.alter(lambda _: changes, permit)
 
-    async def alter(self, changes: Callable[[RigFile], Mapping[str, Any]]) -> Change:
+    async def alter(self, changes: Callable[[RigFile], Mapping[str, Any]], permit: Permit = free) -> Change:
         """The same with changes that depend on what the file has: told when no other change is under way."""
         async with self._one_at_a_time:
             plan = self._store.plan(changes(self._store.settings))
-            return await self._apply_and_save(plan)
+            return await self._apply_and_save(plan, permit)
 
-    async def undo(self) -> Change:
+    async def undo(self, permit: Permit = free) -> Change:
         """Back to the file as it was before the last save, which becomes the previous one itself."""
         async with self._one_at_a_time:
-            return await self._apply_and_save(await asyncio.to_thread(self._store.plan_of_previous))
+            return await self._apply_and_save(await asyncio.to_thread(self._store.plan_of_previous), permit)
 
     def exported(self) -> str:
         """The file's text as it may be given away."""
@@ -121,26 +122,27 @@ class RigChanges:
         plan = await asyncio.to_thread(plan_of_text, self._store, text)
         return listed(self._store.settings, plan)
 
-    async def take(self, text: str) -> Change:
+    async def take(self, text: str, permit: Permit = free) -> Change:
         """Take another rig file's text over whole; raises `RigFileError`, `Refused`."""
         async with self._one_at_a_time:
-            return await self._apply_and_save(await asyncio.to_thread(plan_of_text, self._store, text))
+            plan = await asyncio.to_thread(plan_of_text, self._store, text)
+            return await self._apply_and_save(plan, permit)
 
-    async def reload(self) -> Change:
+    async def reload(self, permit: Permit = free) -> Change:
         """Take the file as it is on the disk; raises `RigFileError`, `Refused`."""
         async with self._one_at_a_time:
             plan = await asyncio.to_thread(self._store.plan_of_disk)
-            change = await self._apply(plan)
+            change = await self._apply(plan, permit)
             await asyncio.to_thread(self._store.take_disk, plan)
             return self._done(change, f"the rig file {self._store.path} was read again")
 
-    async def _apply_and_save(self, plan: Plan) -> Change:
+    async def _apply_and_save(self, plan: Plan, permit: Permit) -> Change:
         if plan.text == self._store.text:
             return Change((), rebuilt=False)
         staged = await asyncio.to_thread(self._store.stage, plan)
         with staged:
             before = self._rig.settings
-            change = await self._apply(plan)
+            change = await self._apply(plan, permit)
             try:
                 await asyncio.to_thread(self._store.commit, staged, plan)
             except RigFileError as error:
@@ -148,19 +150,20 @@ class RigChanges:
                 raise
         return self._done(change, f"the rig file {self._store.path} was saved")
 
-    async def _apply(self, plan: Plan) -> Change:
-        return Change(plan.changed, rebuilt=await self._run_with(self._as_run(plan.settings)))
+    async def _apply(self, plan: Plan, permit: Permit) -> Change:
+        return Change(plan.changed, rebuilt=await self._run_with(self._as_run(plan.settings), permit))
 
-    async def _run_with(self, wanted: RigFile) -> bool:
+    async def _run_with(self, wanted: RigFile, permit: Permit = free) -> bool:
         """Whether the machine was rebuilt for it. What differs counts, not what was asked."""
+        permit()
         fields = differences(self._rig.settings, wanted)
         bound = tuple(sorted(set(fields) - LIVE))
         rebuild = not all(map(_is_of_looks, bound)) or self._rig.is_lost
         if rebuild:
-            await self._exchange(wanted, bound)
+            await self._exchange(wanted, bound, permit)
         elif bound:
             self._require_disarmed(bound)
-            await self._rig.retune(wanted)
+            await self._rig.retune(wanted, permit)
         elif fields:
             self._rig.take_settings(wanted)
         return rebuild
@@ -170,13 +173,13 @@ class RigChanges:
         if state is not RigState.DISARMED and not self._rig.is_lost:
             raise NeedsDisarmed(state, fields)
 
-    async def _exchange(self, wanted: RigFile, fields: tuple[str, ...]) -> None:
+    async def _exchange(self, wanted: RigFile, fields: tuple[str, ...], permit: Permit) -> None:
         self._require_disarmed(fields)
         try:
             await asyncio.to_thread(rehearse, wanted)
         except (ValueError, LinkError) as error:
             raise DoNotGoTogether(str(error)) from error
-        await self._rig.rebuild(wanted)
+        await self._rig.rebuild(wanted, permit)
 
     async def _put_back(self, before: RigFile, failure: RigFileError) -> None:
         """The rig as it was; one that somebody has armed in the meantime keeps what is not saved, and it is told."""

@@ -26,7 +26,7 @@ from server.assembly import Machine, build_machine
 from server.custom_trajectories import CustomTrajectories
 from server.event_log import Event, EventLog, Told
 from server.exchange import Build
-from server.lease.attendance import Attendance, NoLease
+from server.lease.attendance import Attendance, NoLease, Permit, free
 from server.occupation import Occupation
 from server.rig_thread import RigThread
 from server.run_list import RunList
@@ -301,11 +301,14 @@ class RigLife:
 
     # Between two ticks ---------------------------------------------------------------------------
 
-    async def _ask(self, request: Callable[[], T]) -> T:
-        """Carry a request out between two ticks and publish what became of it; raises `Refused`."""
+    async def _ask(self, request: Callable[[], T], permit: Permit = free) -> T:
+        """Carry a request out between two ticks and publish what became of it; raises `Refused`.
+
+        permit: asked just before, on the rig's thread, where one command comes after the other.
+        """
         if self.failure is not None or self._lost:
             raise Refused(self.snapshot.reason)
-        answer = await self._thread.call(request, lambda: self.snapshot.reason)
+        answer = await self._thread.call(lambda: permitted(request, permit), lambda: self.snapshot.reason)
         with contextlib.suppress(Refused):  # a tick that hangs has been told of; the request is carried out
             self.snapshot = await self._thread.call(self._look_again, lambda: self.snapshot.reason)
         self._tell()
@@ -314,6 +317,11 @@ class RigLife:
     def _look_again(self) -> Snapshot:
         return self._tick(None)
 
-    async def between_ticks(self, work: Callable[[], T]) -> T:
+    async def between_ticks(self, work: Callable[[], T], permit: Permit = free) -> T:
         """Do something to the rig's parts on the thread that owns them; raises `Refused` when that hangs."""
-        return await self._ask(work)
+        return await self._ask(work, permit)
+
+
+def permitted(request: Callable[[], T], permit: Permit) -> T:
+    permit()
+    return request()

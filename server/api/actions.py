@@ -10,6 +10,7 @@ from pydantic import Field
 from server.api import ticks
 from server.api.access import TheRig
 from server.api.body import StrictRoute
+from server.api.operator import TheHand
 from server.api.schemas import Edge
 
 router = APIRouter(tags=["rig actions"], route_class=StrictRoute)
@@ -25,9 +26,9 @@ class ArmBody(Edge):
 
 
 @router.post("/arm")
-async def arm(rig: TheRig, body: ArmBody | None = None) -> dict[str, Any]:
+async def arm(rig: TheRig, hand: TheHand, body: ArmBody | None = None) -> dict[str, Any]:
     """Set the board's heading to the estimate and ramp the field up; needs a locked track."""
-    await rig.arm(consent=body is not None and body.consent)
+    await rig.arm(consent=body is not None and body.consent, permit=hand.require)
     return ticks.state_of(rig)
 
 
@@ -46,7 +47,7 @@ async def estop(rig: TheRig) -> dict[str, Any]:
 
 
 @router.post("/reset")
-async def reset(rig: TheRig) -> dict[str, Any]:
+async def reset(rig: TheRig, hand: TheHand) -> dict[str, Any]:
     """Leave the fault state, disarmed."""
-    await rig.reset()
+    await rig.reset(hand.require)
     return ticks.state_of(rig)

@@ -15,6 +15,7 @@ from starlette.requests import HTTPConnection
 from server.api.access import TheChanges, TheRig
 from server.api.body import StrictRoute
 from server.api.calibration_answers import looked_json, pending_lens_json, pending_plane_json, state_json
+from server.api.operator import TheHand
 from server.api.problems import Problem, Rejected
 from server.api.rig_file import own_file, told
 from server.api.schemas import Edge
@@ -144,20 +145,20 @@ def _marks(body: FromMarks) -> Callable[[Lens, float], PlaneFit]:
 
 
 @router.post("/save")
-async def save(calibration: TheCalibration, changes: TheChanges) -> dict[str, Any]:
+async def save(calibration: TheCalibration, changes: TheChanges, hand: TheHand) -> dict[str, Any]:
     """Write what was found into the rig file; the rig, which must be disarmed, is rebuilt with it."""
     lens, plane = calibration.lens, calibration.plane
     with told():
-        await own_file(changes).patch(calibration.changes())
+        await own_file(changes).patch(calibration.changes(), hand.require)
     calibration.saved(lens, plane)
     return state_json(calibration)
 
 
 @router.delete("")
-async def take_out(calibration: TheCalibration, changes: TheChanges) -> dict[str, Any]:
+async def take_out(calibration: TheCalibration, changes: TheChanges, hand: TheHand) -> dict[str, Any]:
     """Back to the optics that the rig file assumes; what was found and not saved goes, too."""
     with told():
-        await own_file(changes).patch({"camera": {"lens": None, "plane": None}})
+        await own_file(changes).patch({"camera": {"lens": None, "plane": None}}, hand.require)
     calibration.forget()
     return state_json(calibration)
 

@@ -16,6 +16,7 @@ from control.gait import Gait
 from control.gait_settings import MM
 from server.api.access import TheChanges, TheRig
 from server.api.body import StrictRoute
+from server.api.operator import TheHand
 from server.api.rig_file import own_file, told
 from server.api.schemas import Edge
 from server.assembly import Machine
@@ -23,6 +24,7 @@ from server.calibration.gait import Star, StarWalk
 from server.calibration.latency import LatencyWalk
 from server.calibration.runs import Calibration, CalibrationRuns, Kind
 from server.calibration.walk import CalibrationWalk
+from server.lease.desk import Hand
 from server.rig import Rig
 from server.rig_file import merged
 from server.settings import RigFile
@@ -57,20 +59,24 @@ TheCalibrationRuns = Annotated[CalibrationRuns, Depends(the_calibration_runs)]
 
 
 @router.post("/star", status_code=202)
-async def walk_star(runs: TheCalibrationRuns, rig: TheRig, body: StarBody | None = None) -> dict[str, Any]:
+async def walk_star(
+    runs: TheCalibrationRuns, rig: TheRig, hand: TheHand, body: StarBody | None = None
+) -> dict[str, Any]:
     """Walk a star on the armed rig, with the tilt and field of the selected gait."""
     body = body or StarBody()
     star = Star(body.legs, body.leg_mm * MM, math.radians(body.rate_deg_s))
     gait = replace(_still(rig.selection.gait), sweep=math.radians(body.sweep_deg), max_rate=star.rate)
-    return await _begin(runs, rig, Kind.STAR, lambda machine: StarWalk(machine, gait, star))
+    return await _begin(runs, rig, Kind.STAR, lambda machine: StarWalk(machine, gait, star), hand)
 
 
 @router.post("/latency", status_code=202)
-async def wiggle(runs: TheCalibrationRuns, rig: TheRig, body: LatencyBody | None = None) -> dict[str, Any]:
+async def wiggle(
+    runs: TheCalibrationRuns, rig: TheRig, hand: TheHand, body: LatencyBody | None = None
+) -> dict[str, Any]:
     """Turn to and fro on the armed rig, and see how late the camera shows it."""
     body = body or LatencyBody()
     gait, parameters = _still(rig.selection.gait), WiggleParameters(turns=body.turns)
-    return await _begin(runs, rig, Kind.LATENCY, lambda machine: LatencyWalk(machine, gait, parameters))
+    return await _begin(runs, rig, Kind.LATENCY, lambda machine: LatencyWalk(machine, gait, parameters), hand)
 
 
 @router.get("/star")
@@ -86,16 +92,20 @@ async def latency_state(runs: TheCalibrationRuns, rig: TheRig) -> dict[str, Any]
 
 
 @router.post("/star/save")
-async def save_star(runs: TheCalibrationRuns, rig: TheRig, changes: TheChanges) -> dict[str, Any]:
+async def save_star(
+    runs: TheCalibrationRuns, rig: TheRig, changes: TheChanges, hand: TheHand
+) -> dict[str, Any]:
     """What the star has found goes into the rig file; needs a disarmed rig, which is then rebuilt."""
-    await _save(runs, Kind.STAR, changes)
+    await _save(runs, Kind.STAR, changes, hand)
     return await star_state(runs, rig)
 
 
 @router.post("/latency/save")
-async def save_latency(runs: TheCalibrationRuns, rig: TheRig, changes: TheChanges) -> dict[str, Any]:
+async def save_latency(
+    runs: TheCalibrationRuns, rig: TheRig, changes: TheChanges, hand: TheHand
+) -> dict[str, Any]:
     """The latency goes into the rig file; needs a disarmed rig, which is then rebuilt."""
-    await _save(runs, Kind.LATENCY, changes)
+    await _save(runs, Kind.LATENCY, changes, hand)
     return await latency_state(runs, rig)
 
 
@@ -105,14 +115,14 @@ def _still(gait: Gait) -> Gait:
 
 
 async def _begin(
-    runs: CalibrationRuns, rig: Rig, kind: Kind, make: Callable[[Machine], CalibrationWalk]
+    runs: CalibrationRuns, rig: Rig, kind: Kind, make: Callable[[Machine], CalibrationWalk], hand: Hand
 ) -> dict[str, Any]:
-    return calibration_json(await runs.start(kind, make), rig.settings)
+    return calibration_json(await runs.start(kind, make, hand.require), rig.settings)
 
 
-async def _save(runs: CalibrationRuns, kind: Kind, changes: TheChanges) -> None:
+async def _save(runs: CalibrationRuns, kind: Kind, changes: TheChanges, hand: Hand) -> None:
     with told():
-        await own_file(changes).alter(lambda _: runs.to_save(kind))
+        await own_file(changes).alter(lambda _: runs.to_save(kind), hand.require)
 
 
 def calibration_json(value: Calibration, settings: RigFile) -> dict[str, Any]:

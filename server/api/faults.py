@@ -15,6 +15,7 @@ from control.simulation.faults.promises import PROMISES, Promise
 from server.api import problems, ticks
 from server.api.access import TheFaultWatch, TheRig
 from server.api.body import StrictRoute
+from server.api.operator import TheHand
 from server.api.schemas import Edge, Name
 from server.fault_watch import FaultWatch, Reaction, cause_of, decay_of
 
@@ -91,10 +92,10 @@ async def list_faults(exhibit: TheExhibit) -> dict[str, Any]:
 
 
 @router.post("", status_code=201)
-async def inject(body: FaultBody, exhibit: TheExhibit) -> dict[str, Any]:
+async def inject(body: FaultBody, exhibit: TheExhibit, hand: TheHand) -> dict[str, Any]:
     """Put a fault in, in place of one of the same name."""
     check(body)
-    await exhibit.rig.between_ticks(lambda: put_in(body, exhibit))
+    await exhibit.rig.between_ticks(lambda: put_in(body, exhibit), hand.require)
     return exhibit.entry(body.name)
 
 
@@ -117,19 +118,21 @@ def is_usual(body: FaultBody) -> bool:
 
 
 @router.delete("/{name}")
-async def clear(name: str, exhibit: TheExhibit) -> dict[str, Any]:
+async def clear(name: str, exhibit: TheExhibit, hand: TheHand) -> dict[str, Any]:
     """Take a fault away; it is gone at the next tick. Nothing to do when it is not in."""
     if name not in KINDS:
         raise problems.not_found(
             f"There is no fault called {name[:80]!r}; GET this list to see what there is."
         )
+    hand.require()
     exhibit.faults.clear(name)
     return exhibit.entry(name)
 
 
 @router.delete("")
-async def clear_all(exhibit: TheExhibit) -> dict[str, Any]:
+async def clear_all(exhibit: TheExhibit, hand: TheHand) -> dict[str, Any]:
     """Take all faults away."""
+    hand.require()
     exhibit.faults.clear_all()
     return exhibit.catalogue()
 

@@ -12,6 +12,7 @@ from control.controllers.manual import Jog
 from server.api import ticks
 from server.api.access import TheRig
 from server.api.body import StrictRoute
+from server.api.operator import TheHand
 from server.api.schemas import Edge
 from server.jog_order import JogOrder
 
@@ -56,9 +57,9 @@ def order_of(request: Request) -> JogOrder:
 
 
 @router.post("/manual")
-async def manual(body: JogBody, request: Request, rig: TheRig) -> dict[str, Any]:
+async def manual(body: JogBody, request: Request, rig: TheRig, hand: TheHand) -> dict[str, Any]:
     """Swing about a pivot for at most 300 ms; the rig must be armed and no run going on. A rate of 0 stops at once."""
     if body.hand is not None and body.number is not None:
         order_of(request).take(body.hand, body.number)
-    await rig.jog(body.to_si())
+    await rig.jog(body.to_si(), hand.require)
     return ticks.state_of(rig)

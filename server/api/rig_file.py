@@ -9,8 +9,10 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Body, Response
 from pydantic import Field
 
+from server.access.caller import TheCaller
 from server.api.access import TheChanges, TheRig
 from server.api.body import StrictRoute
+from server.api.operator import TheHand, TheLease
 from server.api.problems import Problem, Rejected, invalid, offence
 from server.api.schemas import Edge
 from server.rig import Rig
@@ -40,10 +42,10 @@ async def values(rig: TheRig, changes: TheChanges) -> dict[str, Any]:
 
 
 @router.patch("")
-async def alter(body: Changes, rig: TheRig, changes: TheChanges) -> dict[str, Any]:
+async def alter(body: Changes, rig: TheRig, changes: TheChanges, hand: TheHand) -> dict[str, Any]:
     """Change values, and save them: all of them or none. Most need a disarmed rig, which is then rebuilt."""
     with told():
-        return answer(rig, changes, await served(changes).patch(body))
+        return answer(rig, changes, await served(changes).patch(body, hand.require))
 
 
 @router.get("/schema")
@@ -69,26 +71,29 @@ class ImportBody(Edge):
 
 
 @router.post("/import")
-async def take_over(body: ImportBody, rig: TheRig, changes: TheChanges) -> dict[str, Any]:
+async def take_over(
+    body: ImportBody, rig: TheRig, changes: TheChanges, lease: TheLease, caller: TheCaller
+) -> dict[str, Any]:
     """Look at another rig file as a whole (`differences`), or apply it: whole, and to a disarmed rig."""
     with told(), unusable():
         if body.apply:
-            return answer(rig, changes, await served(changes).take(body.toml))
+            hand = lease.hand(caller)
+            return answer(rig, changes, await served(changes).take(body.toml, hand.require))
         return {"differences": await served(changes).look_at(body.toml)}
 
 
 @router.post("/reload")
-async def reload(rig: TheRig, changes: TheChanges) -> dict[str, Any]:
+async def reload(rig: TheRig, changes: TheChanges, hand: TheHand) -> dict[str, Any]:
     """Take over what somebody has edited in the file."""
     with told():
-        return answer(rig, changes, await served(changes).reload())
+        return answer(rig, changes, await served(changes).reload(hand.require))
 
 
 @router.post("/undo")
-async def undo(rig: TheRig, changes: TheChanges) -> dict[str, Any]:
+async def undo(rig: TheRig, changes: TheChanges, hand: TheHand) -> dict[str, Any]:
     """Back to the file as it was before it changed last; once more goes forth again."""
     with told():
-        return answer(rig, changes, await served(changes).undo())
+        return answer(rig, changes, await served(changes).undo(hand.require))
 
 
 def public(rig: Rig, changes: RigChanges | None) -> dict[str, Any]:

@@ -11,6 +11,7 @@ from server.api import ticks
 from server.api.access import TheRig
 from server.api.body import StrictRoute
 from server.api.choices import change, selection_json
+from server.api.operator import TheHand
 from server.api.problems import Problem, Rejected
 from server.api.schemas import RunBody, SelectionChange
 from server.catalogue.record_json import time_text
@@ -37,7 +38,7 @@ def run_json(run: Run) -> dict[str, Any]:
 
 
 @router.post("/runs", status_code=201)
-async def start(rig: TheRig, body: RunBody | None = None) -> dict[str, Any]:
+async def start(rig: TheRig, hand: TheHand, body: RunBody | None = None) -> dict[str, Any]:
     """Start a run; what is left out comes from the selection."""
     body = body or RunBody()
     request = RunRequest(
@@ -48,14 +49,14 @@ async def start(rig: TheRig, body: RunBody | None = None) -> dict[str, Any]:
         label=body.label,
         tags=tuple(body.tags),
     )
-    return run_json(await rig.start_run(request))
+    return run_json(await rig.start_run(request, hand.require))
 
 
 @router.patch("/runs/current")
-async def alter(body: SelectionChange, rig: TheRig) -> dict[str, Any]:
+async def alter(body: SelectionChange, rig: TheRig, hand: TheHand) -> dict[str, Any]:
     """Another controller, trajectory or gait, or other parameters of them, while the robot walks."""
     current(list(rig.runs))
-    return run_json(await rig.change_run(lambda selection: change(selection, body)))
+    return run_json(await rig.change_run(lambda selection: change(selection, body), hand.require))
 
 
 @router.post("/runs/current/stop")
@@ -73,9 +74,9 @@ async def pause(rig: TheRig) -> dict[str, Any]:
 
 
 @router.post("/runs/current/resume")
-async def resume(rig: TheRig) -> dict[str, Any]:
+async def resume(rig: TheRig, hand: TheHand) -> dict[str, Any]:
     """Go on from where the run was held; a rig that was held without a run is armed again (its state)."""
-    await rig.resume_run()
+    await rig.resume_run(hand.require)
     return newest(rig) if rig.snapshot.run is not None else ticks.state_of(rig)
 
 

@@ -10,6 +10,7 @@ from control.gait_settings import GaitSettings
 from server.api.access import TheRig
 from server.api.body import StrictRoute
 from server.api.choices import select, selection_json
+from server.api.operator import TheHand
 from server.api.schemas import SelectionBody
 
 router = APIRouter(tags=["selection"], route_class=StrictRoute)
@@ -22,10 +23,15 @@ async def selection(rig: TheRig) -> dict[str, Any]:
 
 @router.put("/selection")
 async def replace(
-    body: SelectionBody, rig: TheRig, by: Annotated[str | None, Query(max_length=40)] = None
+    body: SelectionBody,
+    rig: TheRig,
+    hand: TheHand,
+    by: Annotated[str | None, Query(max_length=40)] = None,
 ) -> dict[str, Any]:
     """Choose; parameters that are left out get their defaults. `by` is repeated to everybody who is told of it."""
-    await rig.select(select(body), by)
+    selection = select(body)
+    hand.require()
+    await rig.select(selection, by)
     return selection_json(rig.selection)
 
 

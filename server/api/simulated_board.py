@@ -11,6 +11,7 @@ from control.safety import Refused
 from server.api.access import TheRig
 from server.api.body import StrictRoute
 from server.api.calibration import TheCalibration
+from server.api.operator import TheHand
 from server.api.problems import not_found
 from server.api.schemas import Edge
 from server.calibration.optics import assumed_model, board_of
@@ -36,7 +37,9 @@ class BoardBody(Edge):
 
 
 @router.put("")
-async def show_board(body: BoardBody, rig: TheRig, calibration: TheCalibration) -> dict[str, Any]:
+async def show_board(
+    body: BoardBody, rig: TheRig, calibration: TheCalibration, hand: TheHand
+) -> dict[str, Any]:
     """Show the printed board to the simulated camera of a disarmed rig, or take it away, which may be done at any
     time; answers when a picture shows it."""
     camera = rig.machine.camera
@@ -44,6 +47,7 @@ async def show_board(body: BoardBody, rig: TheRig, calibration: TheCalibration) 
         raise not_found("This rig is real; hold the printed board under its camera.")
     if body.shown:
         require_disarmed(rig.snapshot.rig, "what the simulated camera sees")
+    hand.require()
     number = calibration.held(body.pose == "next") if body.shown else 0
     await asyncio.to_thread(_show, camera, rig, body, number)
     calibration.board_is_shown(camera, body.pose if body.shown else None)

@@ -6,6 +6,7 @@ import asyncio
 import io
 import zipfile
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any, TypeVar
 
@@ -15,12 +16,16 @@ from starlette.responses import FileResponse
 
 from control.simulation.plants import plants
 from control.studies.checking import Survey
+from control.studies.definition import StudyDefinition
+from server.access.caller import Caller, TheCaller
 from server.api.access import TheDesk
 from server.api.body import StrictRoute
 from server.api.choices import listing
+from server.api.operator import TheLease
 from server.api.problems import Problem, Rejected, not_found, offence
 from server.api.study_bodies import Begin, DefinitionBody, Metric, StudyBody, metric_of, wrong
 from server.api.study_json import StudyJson, axes_json
+from server.lease.desk import LeaseDesk
 from server.studies.child import ChildFailed
 from server.studies.desk import Asked, StudyDesk
 from server.studies.errors import NoSuchStudy, StudyBusy, StudyStoreError
@@ -81,7 +86,9 @@ async def list_plants() -> list[dict[str, Any]]:
 
 
 @router.post("/studies", status_code=201)
-async def create(body: StudyBody, desk: TheDesk, shown: TheJson) -> dict[str, Any]:
+async def create(
+    body: StudyBody, desk: TheDesk, shown: TheJson, lease: TheLease, caller: TheCaller
+) -> dict[str, Any]:
     """Make a study, and begin it unless `begin` is false."""
     asked = desk.asked(consent=body.how.consent, jobs=body.how.jobs)
     definition = await asyncio.to_thread(body.read)
@@ -89,12 +96,18 @@ async def create(body: StudyBody, desk: TheDesk, shown: TheJson) -> dict[str, An
     if found.problems:
         raise Rejected(wrong([offence((), text) for text in found.problems]))
     if body.begin:
+        asked = permitted(asked, definition, lease, caller)
         with_words(lambda: desk.require_free(definition.on))
     study = await blocking(desk.store.create, definition)
     desk.tell_of("created", study)
     if body.begin:
         await begun(desk, study, asked)
     return await blocking(shown.short, study)
+
+
+def permitted(asked: Asked, definition: StudyDefinition, lease: LeaseDesk, caller: Caller) -> Asked:
+    """A campaign needs the rig's lease to begin, and belongs to the server then; a batch needs none."""
+    return replace(asked, permit=lease.hand(caller).require) if definition.on == "rig" else asked
 
 
 def with_words(check: Callable[[], None]) -> None:
@@ -170,13 +183,20 @@ async def stop(study: TheStudy, desk: TheDesk, shown: TheJson) -> dict[str, Any]
 
 
 @router.post("/studies/{study_id}/resume")
-async def resume(study: TheStudy, desk: TheDesk, shown: TheJson, body: Begin | None = None) -> dict[str, Any]:
+async def resume(
+    study: TheStudy,
+    desk: TheDesk,
+    shown: TheJson,
+    lease: TheLease,
+    caller: TheCaller,
+    body: Begin | None = None,
+) -> dict[str, Any]:
     """Go on with what is left; nothing that has finished is done again."""
     how = body or Begin()
     asked = desk.asked(consent=how.consent, jobs=how.jobs)
     if await blocking(lambda: study.is_complete):
         raise Rejected(Problem(409, "Finished", "This study has finished; nothing is left to be done."))
-    await begun(desk, study, asked)
+    await begun(desk, study, permitted(asked, study.definition, lease, caller))
     return await blocking(shown.short, study)
 
 

@@ -13,10 +13,12 @@ from starlette.requests import HTTPConnection
 from control.safety import Refused
 from server.api.access import TheChanges, TheRig
 from server.api.body import StrictRoute
+from server.api.operator import TheHand
 from server.api.problems import Problem, Rejected, invalid_field, not_found
 from server.api.rig_file import served, told
 from server.api.schemas import Edge
 from server.colour_picker import ColourPicker, NoPicture
+from server.lease.desk import Hand
 from server.rig import Rig
 from server.rig_changes import RigChanges
 from server.vision_section import DEFAULT_PROFILE, ColourSection, ProfileName, VisionSection
@@ -83,9 +85,9 @@ async def looks(rig: TheRig) -> dict[str, Any]:
 
 
 @router.patch("")
-async def alter(body: VisionChange, rig: TheRig, changes: TheChanges) -> dict[str, Any]:
+async def alter(body: VisionChange, rig: TheRig, changes: TheChanges, hand: TheHand) -> dict[str, Any]:
     """Use other colours, sizes or another profile from the next frame on, and save them; on a disarmed rig."""
-    await save(changes, lambda vision: changed(body, vision))
+    await save(changes, lambda vision: changed(body, vision), hand)
     return vision_json(rig)
 
 
@@ -102,34 +104,36 @@ async def pick_colour(body: PickBody, picker: ThePicker) -> dict[str, Any]:
 
 
 @router.post("/profiles", status_code=201)
-async def save_profile(body: ProfileBody, rig: TheRig, changes: TheChanges) -> dict[str, Any]:
+async def save_profile(body: ProfileBody, rig: TheRig, changes: TheChanges, hand: TheHand) -> dict[str, Any]:
     """Save the colours in use under a name, and use them by it from now on."""
-    await save(changes, lambda vision: with_profile(body.name, vision))
+    await save(changes, lambda vision: with_profile(body.name, vision), hand)
     return vision_json(rig)
 
 
 @router.delete("/profiles/{name}")
-async def delete_profile(name: str, rig: TheRig, changes: TheChanges) -> dict[str, Any]:
+async def delete_profile(name: str, rig: TheRig, changes: TheChanges, hand: TheHand) -> dict[str, Any]:
     """Forget a profile that is not in use."""
-    await save(changes, lambda vision: without_profile(name, vision))
+    await save(changes, lambda vision: without_profile(name, vision), hand)
     return vision_json(rig)
 
 
 @router.post("/follow")
-async def follow(body: PlaceBody, rig: TheRig) -> dict[str, Any]:
+async def follow(body: PlaceBody, rig: TheRig, hand: TheHand) -> dict[str, Any]:
     """The robot is there in the picture; blobs elsewhere are others. While the rig is disarmed or held."""
     width, height = rig.machine.camera_model.size
     if not (body.u <= width - 0.5 and body.v <= height - 0.5):
         words = f"({body.u:g}, {body.v:g}) px is outside the picture, which is {width}x{height} px"
         raise Rejected(invalid_field(("u",), words))
-    await rig.follow(body.u, body.v)
+    await rig.follow(body.u, body.v, hand.require)
     return vision_json(rig)
 
 
-async def save(changes: RigChanges | None, make: Callable[[VisionSection], Mapping[str, Any]]) -> None:
+async def save(
+    changes: RigChanges | None, make: Callable[[VisionSection], Mapping[str, Any]], hand: Hand
+) -> None:
     """make: of the rig file's [vision] as it is when no other change is under way, what changes in it."""
     with told():
-        await served(changes).alter(lambda settings: {"vision": make(settings.vision)})
+        await served(changes).alter(lambda settings: {"vision": make(settings.vision)}, hand.require)
 
 
 def with_profile(name: str, vision: VisionSection) -> dict[str, Any]:

@@ -22,6 +22,7 @@ from control.safety import Refused
 from control.snapshot import RigState
 from server.assembly import Machine
 from server.calibration.walk import CalibrationWalk, Findings, changed_since, with_advice
+from server.lease.attendance import Permit, free
 from server.settings import RigFile
 from server.streams import StreamEnded
 
@@ -81,7 +82,9 @@ class CalibrationRuns:
     def __getitem__(self, kind: Kind) -> Calibration:
         return self._newest[kind]
 
-    async def start(self, kind: Kind, make: Callable[[Machine], CalibrationWalk]) -> Calibration:
+    async def start(
+        self, kind: Kind, make: Callable[[Machine], CalibrationWalk], permit: Permit = free
+    ) -> Calibration:
         """Begin on the armed rig; raises `Refused`, and what a bad choice raises."""
         busy = next((each for each in Kind if self._newest[each].goes_on), None)
         if busy is not None:
@@ -91,7 +94,7 @@ class CalibrationRuns:
             walk.check(pose)
         with contextlib.ExitStack() as watching:
             watching.enter_context(self._rig.watched(walk.watch))
-            run = await self._rig.start_run(walk.request)
+            run = await self._rig.start_run(walk.request, permit)
             self._newest[kind] = Calibration(
                 Stage.WALKING, run_id=run.id, settings=self._rig.settings, rests_on=walk.rests_on
             )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any, Protocol
 
 
@@ -28,3 +29,11 @@ class NoLease:
 
     def in_state(self) -> None:
         return None
+
+
+Permit = Callable[[], None]
+"""Asked where a command takes effect; raises where it may not any more."""
+
+
+def free() -> None:
+    """The permit of whoever needs none."""

@@ -11,7 +11,7 @@ import contextlib
 import hashlib
 import secrets
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -80,8 +80,7 @@ class LeaseDesk:
         self._look()
 
     def absence(self, walking: bool) -> str:
-        """Why the rig must not go on by itself, "" while it may. walking: an attended run goes on; else the rig is
-        armed and idle. On the rig's thread."""
+        """As `Attendance` has it: a script's run is held, and all that a page has switched on."""
         lease = self.lease
         party = lease.absent(self._clock())
         if party is None or not (walking or party.is_page):
@@ -105,7 +104,9 @@ class LeaseDesk:
         holder = self.lease.holder
         if holder is not None and holder.party.key != key:
             return self._somebody_else(holder)
-        detail = "This command belongs to an earlier turn of yours as operator; nothing was done. Send it again."
+        detail = (
+            "This command belongs to an earlier turn of yours as operator; nothing was done. Send it again."
+        )
         return Rejected(Problem(409, "Too late", detail, members={"holder": self._turn_json(holder)}))
 
     def _somebody_else(self, holder: Turn) -> Rejected:
@@ -133,8 +134,7 @@ class LeaseDesk:
         before = self.lease
         with self._refusals():
             self.lease = before.answer(key_of(caller), grant, self._clock())
-        assert before.holder is not None and before.asking is not None
-        self._rig.announce("info", EVENT, words.answered(before.holder.party, before.asking.party, grant))
+        self._rig.announce("info", EVENT, words.answered(before, grant))
         self._tell()
 
     def release(self, caller: Caller) -> None:
@@ -150,7 +150,7 @@ class LeaseDesk:
         self._tell()
 
     @contextlib.contextmanager
-    def _refusals(self):
+    def _refusals(self) -> Iterator[None]:
         try:
             yield
         except NotTheHolder:
@@ -235,8 +235,6 @@ def key_of(caller: Caller) -> str:
 
 def party_of(caller: Caller, name: str = "", note: str = "") -> Party:
     """With the name that the client gives itself, or the one it is known by."""
-    if caller.from_page:
-        known = f"Dashboard at {caller.address}"
-    else:
-        known = caller.client or f"script at {caller.address}"
+    script = caller.client or f"script at {caller.address}"
+    known = f"Dashboard at {caller.address}" if caller.from_page else script
     return Party(key_of(caller), (name or known)[:NAME_LENGTH], note[:NOTE_LENGTH], caller.from_page)

@@ -42,13 +42,18 @@ def asked(outcome: Asked, party: Party, before: Lease, now: float) -> str | None
             f"who did not answer for {TAKE_OVER_AFTER:g} s{note}"
         )
     silence = holder.silence(now)
-    return f"{party.name} took the rig over from {holder.party.name}, who was silent for {silence:.0f} s{note}"
+    return (
+        f"{party.name} took the rig over from {holder.party.name}, who was silent for {silence:.0f} s{note}"
+    )
 
 
-def answered(holder: Party, asker: Party, grant: bool) -> str:
-    if grant:
-        return f"{holder.name} handed the rig over to {asker.name}"
-    return f"{holder.name} keeps the rig; {asker.name} was refused"
+def answered(before: Lease, grant: bool) -> str:
+    holder, asker = (turn.party.name if turn else "nobody" for turn in (before.holder, before.asking))
+    return (
+        f"{holder} handed the rig over to {asker}"
+        if grant
+        else f"{holder} keeps the rig; {asker} was refused"
+    )
 
 
 def released(party: Party) -> str:

@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any
 
 from control.studies.checking import Survey, runs_at_most, survey
 from control.studies.definition import StudyDefinition
+from server.lease.attendance import Permit, free
 from server.occupation import Stop
 from server.own_thread import in_a_thread
 from server.rig_life import ENDED
@@ -68,11 +69,13 @@ class Asked:
 
     consent: a campaign may put current through real coils.  jobs: processes of a batch; 0: one a core.  heard: the
     newest stop of the rig at that time; one that comes later counts against the study, too.
+    permit: asked when it begins.
     """
 
     consent: bool
     jobs: int
     heard: Stop | None
+    permit: Permit = free
 
 
 class StudyDesk:
@@ -124,6 +127,7 @@ class StudyDesk:
         self.require_free(on)
         tally = await asyncio.to_thread(study.tally)
         self.require_free(on)  # somebody else may have come first
+        asked.permit()
         total = runs_at_most(study.definition)
         work = Work(study, tally.done, total, tally.failed, begun_with=tally.done, began=time.monotonic())
         self._works[study.id] = work
