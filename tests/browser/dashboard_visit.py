@@ -99,7 +99,8 @@ class ServedRig:
 
     def ask(self, path: str) -> dict[str, Any]:
         """GET, as JSON."""
-        with urllib.request.urlopen(f"{self.url}/api/v1{path}", timeout=5) as answer:
+        request = urllib.request.Request(f"{self.url}/api/v1{path}", headers={"X-Client": CLIENT})
+        with urllib.request.urlopen(request, timeout=5) as answer:
             return json.load(answer)
 
     def send(self, method: str, path: str, body: dict[str, Any] | None = None) -> None:
