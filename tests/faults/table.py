@@ -52,6 +52,15 @@ EVENTS = (
         "test_computer_dies",
     ),
     OutsideEvent(
+        "Operator's page lost, asleep, hidden, or not reading", "who has not been heard for 2 s", "held",
+        "2000 after it was last heard",
+        "resume, or take over and resume", "test_operator_lost",
+    ),
+    OutsideEvent(
+        "Two operators", "who operates; late commands of the former one are refused", "as it is", "–",
+        "ask for it, or take it over", "test_lease_race",
+    ),
+    OutsideEvent(
         "Study interrupted", "how far it came; finished runs stay as they are", "ended", "as for what interrupted it",
         "resume the study", "test_study_interrupted",
     ),
