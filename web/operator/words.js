@@ -18,7 +18,7 @@ export const isAsking = ({ asking, you }) => asking !== null && asking.id === yo
 
 /** How long the holder has not been heard of, s; 0 while that says nothing. @param {Operator} operator @param {number} now performance.now() */
 export function silence({ holder, lease_s, heardAt }, now) {
-  if (holder === null || holder.silent_s <= lease_s) return 0;
+  if (holder === null || holder.silent_s < lease_s) return 0;
   return holder.silent_s + (now - heardAt) / 1000;
 }
 
