@@ -52,7 +52,7 @@ def ben(rig: ServedRig, open_tab: OpenTab) -> Iterator[Visit]:
     assert visit.complaints == []
 
 
-def sign(page: Page, words: str) -> Locator:
+def sign(page: Page, words: str | re.Pattern[str]) -> Locator:
     """In the bar; its words are read out the same on a phone."""
     return page.get_by_role("banner").get_by_role("button", name=words)
 
