@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from pydantic import ValidationError
 
-SECRET_FIELDS = frozenset({"webhook_url"})
+SECRET_FIELDS = frozenset({"webhook_url", "token"})
 """Fields whose values are told to nobody, not even when they are wrong."""
 LONGEST_GIVEN = 100
 """Characters that are shown of what was given: enough to find it again."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import logging
-from collections.abc import AsyncIterator, Collection
+from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,6 +14,8 @@ from fastapi import APIRouter, Depends, FastAPI
 from starlette.responses import FileResponse
 
 import web
+from server.access.guard import Guard
+from server.access.opening import Opening
 from server.api import (
     about,
     actions,
@@ -25,7 +27,9 @@ from server.api import (
     controllers,
     exports,
     faults,
+    login,
     manual,
+    metrics,
     notifications,
     operator,
     overview,
@@ -56,6 +60,7 @@ from server.fault_watch import FaultWatch
 from server.fresh_files import ALWAYS_ASK, FreshFiles
 from server.jog_order import JogOrder
 from server.lease.desk import LeaseDesk
+from server.login_page import add_login_page
 from server.notifier import Notifier
 from server.pictures import Pictures
 from server.replay.sessions import ReplaySessions
@@ -68,6 +73,11 @@ from server.scene.viewers.known import Viewers
 from server.studies.desk import StudyDesk
 from server.studies.learning import Learning
 from server.upkeep import Upkeep
+from server.watching.exposition import Exposition
+from server.watching.health import Pulse
+from server.watching.log import log_event
+from server.watching.supervisor import Supervisor
+from server.watching.tally import ClientTally, Counting, EventTally, RigTally
 
 if TYPE_CHECKING:
     from server.archive import Archive
@@ -87,6 +97,7 @@ RESPONSES: dict[int | str, dict[str, Any]] = dict.fromkeys((409, 422), PROBLEM_S
 
 
 ROOMS = (
+    login,
     state,
     rig_file,
     selection,
@@ -118,13 +129,18 @@ ROOMS = (
 
 
 def create_app(
-    rig: Rig, archive: Archive, hosts: Collection[str] = (), changes: RigChanges | None = None
+    rig: Rig,
+    archive: Archive,
+    changes: RigChanges | None = None,
+    guard: Guard | None = None,
+    opening: Opening | None = None,
 ) -> FastAPI:
     """The application of one rig and of the archive that its runs go to; it closes both when it ends.
 
-    hosts: names it may be asked by, beside localhost and its address.
-    changes: the rig's file, when it has one that may be changed.
+    changes: the rig's file, when it has one that may be changed.  guard: knows who asks; without one, everybody is
+    let in.  opening: names it may be asked by, beside localhost and its address, and other sites that may use it.
     """
+    opening = opening or Opening()
     app = FastAPI(
         title="pivotrig",
         version=state.VERSION,
@@ -154,16 +170,30 @@ def create_app(
     app.state.notifier = Notifier(rig)
     app.state.study_json = StudyJson(app.state.studies)
     app.state.learning = Learning(app.state.studies)
-    app.add_middleware(Door, hosts=hosts)
+    app.state.ticks = RigTally()
+    app.state.pulse = Pulse(rig, app.state.ticks)
+    watch(app)
+    app.state.guard = guard = guard or Guard()
+    app.add_middleware(Door, hosts=opening.hosts, guard=guard, origins=opening.origins)
+    app.add_middleware(Counting, tally=app.state.clients)
     problems.install(app)
     add_routes(app)
     return app
+
+
+def watch(app: FastAPI) -> None:
+    """Count from now on what the figures are made of, and put the rig's events into the program's log."""
+    rig: Rig = app.state.rig
+    events, app.state.clients = EventTally(), ClientTally()
+    rig.event_log.listeners += [lambda event: events.add(str(event.severity), event.code), log_event]
+    app.state.exposition = Exposition(rig, app.state.ticks, events, app.state.clients, state.VERSION)
 
 
 @asynccontextmanager
 async def lifespan(app: FastAPI) -> AsyncIterator[None]:
     """The rig stops before everything else does, and whatever else fails: its stop zeroes the coils."""
     rig, scene, changes = app.state.rig, app.state.scene, app.state.rig_changes
+    supervisor = Supervisor(app.state.pulse)
     archive, upkeep = app.state.archive, Upkeep(app.state.archive, rig)
     try:
         await rig.start()
@@ -179,8 +209,12 @@ async def lifespan(app: FastAPI) -> AsyncIterator[None]:
         await app.state.page_files.version()
         if changes is not None:
             changes.start()
-        yield
+        app.state.pulse.begin()
+        with rig.watched(app.state.ticks.follow):
+            supervisor.start()
+            yield
     finally:
+        await supervisor.stop()
         try:
             await end_rig(app)
         finally:
@@ -236,6 +270,8 @@ def add_routes(app: FastAPI) -> None:
     files = app.state.page_files = FreshFiles(WEB_FOLDER)
     app.add_api_route("/", files.page, include_in_schema=False)
     app.add_api_route("/docs", docs, include_in_schema=False)
+    app.include_router(metrics.router)
+    add_login_page(app, WEB_FOLDER)
     add_scene_routes(app)
     app.mount("/static", files)
 

@@ -13,26 +13,30 @@ import logging
 from collections.abc import Collection
 from dataclasses import dataclass
 
-from starlette.datastructures import Headers, MutableHeaders
+from starlette.datastructures import Headers
+from starlette.responses import Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from server.access.caller import KEY as CALLER
-from server.access.caller import Role, introduced
+from server.access.ended import AccessEnded, closing_unless_still, while_still
+from server.access.guard import Admitted, Guard
+from server.access.policy import SAFE_METHODS, is_open
 from server.api.problems import Problem, internal_error
-from server.page_policy import content_policy
+from server.reception.bodies import capped, read_body, replaying
+from server.reception.headers import shown, with_headers
+from server.reception.other_sites import is_preflight, lent_to, preflight
 
 log = logging.getLogger(__name__)
 
-SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
 LOOPBACK_NAMES = frozenset({"localhost", "127.0.0.1", "[::1]"})
 OWN_SITES = frozenset({"same-origin", "none"})
 """Values of Sec-Fetch-Site that may change something; "same-site" includes other programs on this machine."""
 
-REFUSED_FEATURES = "camera=(), microphone=(), geolocation=(), payment=(), usb=(), serial=()"
-"""What of the looking computer no page of ours ever asks for."""
-
 BODY_LIMIT = 1 << 20
 """Largest request body, bytes; the longest honest one, a drawn path of some thousand points, has 100 kB."""
+
+UNKNOWN_BODY_LIMIT = 4 << 10
+"""The same before anybody is known, bytes; a login has 60."""
 
 MESSAGE_LIMIT = 64 << 10
 """Largest WebSocket message from a client, bytes; the longest honest one, a scene camera, has 300."""
@@ -43,22 +47,35 @@ BODY_TIMEOUT = 10.0
 
 @dataclass(frozen=True, slots=True)
 class Limits:
+    """unknown_body: of a request that nobody has been asked a token for."""
+
     body: int = BODY_LIMIT
+    unknown_body: int = UNKNOWN_BODY_LIMIT
     message: int = MESSAGE_LIMIT
     body_timeout: float = BODY_TIMEOUT
 
 
 class Door:
-    """Refuses what does not come from the rig's own page or from a program on purpose.
+    """Refuses what does not come from the rig's own page or from a program on purpose, and who may not come in.
 
     hosts: further names under which the server may be asked, beside the loopback names and the address
-    that the connection arrived at.
+    that the connection arrived at.  guard: knows who asks; without one, everybody is let in.
+    origins: of other sites whose pages may use the rig, such as "https://lab.example".
     """
 
-    def __init__(self, app: ASGIApp, hosts: Collection[str] = (), limits: Limits | None = None) -> None:
+    def __init__(
+        self,
+        app: ASGIApp,
+        hosts: Collection[str] = (),
+        limits: Limits | None = None,
+        guard: Guard | None = None,
+        origins: Collection[str] = (),
+    ) -> None:
         self._app = app
         self._hosts = LOOPBACK_NAMES | {host.lower() for host in hosts}
         self._limits = limits or Limits()
+        self._guard = guard or Guard()
+        self._origins = frozenset(origins)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         if scope["type"] == "http":
@@ -69,16 +86,33 @@ class Door:
             await self._app(scope, receive, send)
 
     async def _http(self, scope: Scope, receive: Receive, send: Send) -> None:
-        send = with_headers(scope, send)
-        problem = self._stranger(scope) or self._unsafe(scope)
-        scope[CALLER] = introduced(scope, Role.ADMIN, "")
-        if problem is None and scope["method"] not in SAFE_METHODS:
+        friend = self._friend(Headers(scope=scope))
+        send = with_headers(scope, send, lent_to(friend))
+        if friend and is_preflight(scope):
+            await preflight()(scope, receive, send)
+            return
+        refused = self._refusal(scope)
+        if refused is None:
+            admitted = self._guard.admit(scope)
+            if isinstance(admitted, Admitted):
+                scope[CALLER] = admitted.caller
+                await self._let_in(scope, receive, while_still(admitted, send))
+                return
+            refused = admitted
+        await refused(scope, receive, send)
+
+    async def _let_in(self, scope: Scope, receive: Receive, send: Send) -> None:
+        if scope["method"] not in SAFE_METHODS:
             body, problem = await self._body(scope, receive)
+            if problem is not None:
+                await problem.response()(scope, receive, send)
+                return
             receive = replaying(body, receive)
-        if problem is not None:
-            await problem.response()(scope, receive, send)
-        else:
-            await self._served(scope, receive, send)
+        await self._served(scope, receive, send)
+
+    def _refusal(self, scope: Scope) -> Response | None:
+        problem = self._stranger(scope) or self._unsafe(scope)
+        return None if problem is None else problem.response()
 
     async def _served(self, scope: Scope, receive: Receive, send: Send) -> None:
         """The application's answer, or a problem document in its place when it fails before it has begun."""
@@ -91,6 +125,8 @@ class Door:
 
         try:
             await self._app(scope, receive, send_noting)
+        except AccessEnded:
+            log.info("%s was ended: its token or session has ended", scope["path"])
         except Exception:
             log.exception("%s %s failed", scope["method"], scope["path"])
             if started:
@@ -101,8 +137,16 @@ class Door:
         if self._stranger(scope) is not None:
             await send({"type": "websocket.close", "code": 1008, "reason": "not from here"})
             return
-        scope[CALLER] = introduced(scope, Role.ADMIN, "")
-        await self._app(scope, capped(receive, send, self._limits.message), send)
+        admitted = self._guard.admit(scope)
+        if not isinstance(admitted, Admitted):
+            await turn_away(receive, send)
+            return
+        scope[CALLER] = admitted.caller
+        watched = closing_unless_still(admitted, send)
+        try:
+            await self._app(scope, capped(receive, send, self._limits.message), watched)
+        except AccessEnded:
+            log.info("%s was ended: its token or session has ended", scope["path"])
 
     def _stranger(self, scope: Scope) -> Problem | None:
         headers = Headers(scope=scope)
@@ -110,9 +154,14 @@ class Door:
         if len(hosts) != 1 or not self._is_own(hosts[0], scope):
             return wrong_host(hosts)
         origins = headers.getlist("origin")
-        if origins and origins != [own_origin(scope, hosts[0])]:
+        if origins and origins != [own_origin(scope, hosts[0])] and not self._friend(headers):
             return wrong_origin(origins)
         return None
+
+    def _friend(self, headers: Headers) -> str:
+        """The origin of another site that may use the rig, or ""."""
+        origins = headers.getlist("origin")
+        return origins[0] if len(origins) == 1 and origins[0] in self._origins else ""
 
     def _is_own(self, host: str, scope: Scope) -> bool:
         name = host_name(host)
@@ -124,34 +173,45 @@ class Door:
             return None
         headers = Headers(scope=scope)
         site = headers.get("sec-fetch-site")
-        if site is not None and site not in OWN_SITES:
+        if site is not None and site not in OWN_SITES and not self._friend(headers):
             return Problem(
                 403, "Not from here", f"Requests from another site ({site}) may not change anything."
             )
         if not is_json(headers) and ("content-type" in headers or has_body(headers)):
             return not_json(headers.get("content-type"))
-        return self._announced_too_large(headers)
+        return self._announced_too_large(scope, headers)
 
-    def _announced_too_large(self, headers: Headers) -> Problem | None:
+    def _announced_too_large(self, scope: Scope, headers: Headers) -> Problem | None:
         length = headers.get("content-length", "0")
         if not (length.isascii() and length.isdigit()):
             return Problem(400, "Bad request", "Content-Length must be a number of bytes.")
-        return too_large(self._limits.body) if len(length) > 12 or int(length) > self._limits.body else None
+        limit = self._limit(scope)
+        return too_large(limit) if len(length) > 12 or int(length) > limit else None
+
+    def _limit(self, scope: Scope) -> int:
+        return self._limits.unknown_body if is_open(scope["path"]) else self._limits.body
 
     async def _body(self, scope: Scope, receive: Receive) -> tuple[bytes, Problem | None]:
         """The whole body, counted while it comes, since a stream need not announce its length."""
         try:
             async with asyncio.timeout(self._limits.body_timeout):
-                body, complete = await read_body(receive, self._limits.body)
+                body, complete = await read_body(receive, self._limit(scope))
         except TimeoutError:
             return b"", Problem(
                 408, "Too slow", f"The body did not come within {self._limits.body_timeout:g} s."
             )
         if not complete:
-            return b"", too_large(self._limits.body)
+            return b"", too_large(self._limit(scope))
         if body and not is_json(Headers(scope=scope)):
             return b"", not_json(Headers(scope=scope).get("content-type"))
         return body, None
+
+
+async def turn_away(receive: Receive, send: Send) -> None:
+    """Open a WebSocket only to say why it closes: of one that is never opened, a page cannot tell the reason."""
+    await receive()
+    await send({"type": "websocket.accept"})
+    await send({"type": "websocket.close", "code": 1008, "reason": "token needed"})
 
 
 def host_name(host: str) -> str:
@@ -212,67 +272,3 @@ def not_json(received: str | None) -> Problem:
 
 def too_large(limit: int) -> Problem:
     return Problem(413, "Too large", f"A body may have at most {limit} bytes.")
-
-
-def shown(text: str) -> str:
-    """Foreign text, fit to be repeated in an answer."""
-    return text.encode("ascii", "replace").decode()[:100]
-
-
-async def read_body(receive: Receive, limit: int) -> tuple[bytes, bool]:
-    """The body as far as `limit` bytes, and whether that is all of it."""
-    chunks: list[bytes] = []
-    size = 0
-    while True:
-        message = await receive()
-        chunk = message.get("body", b"")
-        size += len(chunk)
-        if size > limit:
-            return b"", False
-        chunks.append(chunk)
-        if message["type"] != "http.request" or not message.get("more_body", False):
-            return b"".join(chunks), True
-
-
-def replaying(body: bytes, receive: Receive) -> Receive:
-    """A receive that gives the body that has been read, then whatever comes after it."""
-    first: list[Message] = [{"type": "http.request", "body": body, "more_body": False}]
-
-    async def replay() -> Message:
-        return first.pop() if first else await receive()
-
-    return replay
-
-
-def capped(receive: Receive, send: Send, limit: int) -> Receive:
-    """A receive that ends the connection with 1009 when a message is longer than `limit` bytes."""
-
-    async def receive_capped() -> Message:
-        message = await receive()
-        text, data = message.get("text") or "", message.get("bytes") or b""
-        if message["type"] != "websocket.receive" or max(len(text), len(data)) <= limit:
-            return message
-        await send({"type": "websocket.close", "code": 1009, "reason": f"at most {limit} bytes a message"})
-        return {"type": "websocket.disconnect", "code": 1009}
-
-    return receive_capped
-
-
-def with_headers(scope: Scope, send: Send) -> Send:
-    """A send that adds the headers which keep a browser from lending this page to others."""
-    host = shown(Headers(scope=scope).get("host", ""))
-    safe_host = "".join(c for c in host if c.isalnum() or c in ".-:[]")
-
-    async def send_with_headers(message: Message) -> None:
-        if message["type"] == "http.response.start":
-            headers = MutableHeaders(scope=message)
-            headers["Content-Security-Policy"] = content_policy(scope["path"], safe_host)
-            headers["X-Content-Type-Options"] = "nosniff"
-            headers["Referrer-Policy"] = "no-referrer"
-            headers["Cross-Origin-Resource-Policy"] = "same-origin"
-            headers["Cross-Origin-Opener-Policy"] = "same-origin"
-            headers["Permissions-Policy"] = REFUSED_FEATURES
-            headers.setdefault("Cache-Control", "no-store")
-        await send(message)
-
-    return send_with_headers

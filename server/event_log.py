@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from typing import Any
@@ -58,9 +58,10 @@ class Told:
 
 
 class EventLog:
-    """entries: oldest first.  messages: what goes to every client as it comes."""
+    """entries: oldest first.  messages: what goes to every client as it comes.  listeners: told of each line."""
 
     def __init__(self) -> None:
+        self.listeners: list[Callable[[Event], None]] = []
         self.entries: deque[Event] = deque(maxlen=EVENTS_KEPT)
         self.messages: Publisher[dict[str, Any]] = announcer()
         self._count = 0
@@ -69,6 +70,8 @@ class EventLog:
         self._count += 1
         event = Event(self._count, told.line, told.at, told.run_id)
         self.entries.append(event)
+        for listener in self.listeners:
+            listener(event)
         self.messages.publish({"type": "event", **event_json(event)})
 
     def tell_runs(self, news: Iterable[News]) -> None:

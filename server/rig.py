@@ -20,8 +20,8 @@ from control.trajectories.trajectory import points_of
 from server.api.choices import selection_json
 from server.assembly import Machine
 from server.exchange import Build, Exchange, NoMachine, exchange, require_disarmed
-from server.lease.attendance import Permit, free
-from server.rig_life import RigLife, permitted
+from server.lease.attendance import Permit, free, permitted
+from server.rig_life import RigLife
 from server.run_list import new_id
 from server.settings import RigFile
 from server.vision_settings import tracker_settings

@@ -26,7 +26,7 @@ from server.assembly import Machine, build_machine
 from server.custom_trajectories import CustomTrajectories
 from server.event_log import Event, EventLog, Told
 from server.exchange import Build
-from server.lease.attendance import Attendance, NoLease, Permit, free
+from server.lease.attendance import Attendance, NoLease, Permit, free, permitted
 from server.occupation import Occupation
 from server.rig_thread import RigThread
 from server.run_list import RunList
@@ -107,6 +107,10 @@ class RigLife:
     def events(self) -> Sequence[Event]:
         """What has happened, oldest first."""
         return self._log.entries
+
+    @property
+    def event_log(self) -> EventLog:
+        return self._log
 
     @property
     def announcements(self) -> Publisher[dict[str, Any]]:
@@ -320,8 +324,3 @@ class RigLife:
     async def between_ticks(self, work: Callable[[], T], permit: Permit = free) -> T:
         """Do something to the rig's parts on the thread that owns them; raises `Refused` when that hangs."""
         return await self._ask(work, permit)
-
-
-def permitted(request: Callable[[], T], permit: Permit) -> T:
-    permit()
-    return request()

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import asyncio.constants
 import errno
-import ipaddress
 import os
 import signal
 import socket
@@ -20,6 +20,8 @@ import uvicorn
 from fastapi import FastAPI
 
 from control.link.conversion import LinkError
+from server.access.guard import Guard
+from server.access.opening import HANDSHAKE, Opening, OpeningError, guard_for
 from server.app import create_app, end_streams
 from server.archive import Archive
 from server.assembly import Machine, build_machine
@@ -52,6 +54,7 @@ class Place:
     host: str
     port: int
     fragment: str = ""
+    opening: Opening = Opening()
 
 
 class ServeError(Exception):
@@ -63,22 +66,25 @@ def serve_rig(
 ) -> None:
     """Serve until a signal comes; raises `ServeError`. as_run: makes of the file's rig the one that runs."""
     _prepare_data(data)
-    host, port = place.host, place.port
-    listener = _listen(host, port)
+    guard = _guard(place, data)
+    listener = _listen(place.host, place.port)
     sys.setswitchinterval(TURN)
+    asyncio.constants.SSL_HANDSHAKE_TIMEOUT = HANDSHAKE  # uvicorn has no option for it
     build = partial(build_machine, realtime=True, data=data)
     try:
         machine, archive = _open(build, as_run(store.settings), data)
     except ServeError:
         listener.close()
         raise
-    address = _address(listener) + place.fragment
+    address = _address(listener, place.opening) + place.fragment
     rig = Rig(machine, build, archive.recorder)
     for problem in rig.custom_trajectories.open(data / TRAJECTORIES):
         rig.announce("warn", "trajectories", problem)
-    application = create_app(rig, archive, changes=RigChanges(rig, store, as_run))
+    application = create_app(
+        rig, archive, changes=RigChanges(rig, store, as_run), guard=guard, opening=place.opening
+    )
     application.state.notifier.address = address
-    server = _Server(rig, application, address, open_browser)
+    server = _Server(rig, application, address, open_browser, place.opening)
     application.openapi()  # kept for whoever asks: to make it takes 0.3 s, in which the loop would stand still
     set_aside()  # the greater part before the loop runs, which a search would hold up
     with listener, handled({ESTOP: server.handle_estop, signal.SIGHUP: server.handle_exit}):
@@ -102,6 +108,14 @@ def _open(build: Build, settings: RigFile, data: Path) -> tuple[Machine, Archive
         raise ServeError(str(error)) from error
 
 
+def _guard(place: Place, data: Path) -> Guard:
+    try:
+        place.opening.check()
+        return guard_for(place.host, place.opening, data)
+    except OpeningError as error:
+        raise ServeError(str(error)) from error
+
+
 def _leave(reason: str) -> NoReturn:
     """End at once: the interpreter would wait for the thread that hangs."""
     print(f"pivotrig: {reason}", file=sys.stderr, flush=True)
@@ -111,7 +125,9 @@ def _leave(reason: str) -> NoReturn:
 class _Server(uvicorn.Server):
     """uvicorn, but a signal zeroes the coils before anything else, and readiness is announced."""
 
-    def __init__(self, rig: Rig, application: FastAPI, address: str, open_browser: bool) -> None:
+    def __init__(
+        self, rig: Rig, application: FastAPI, address: str, open_browser: bool, opening: Opening
+    ) -> None:
         self._rig = rig
         self._address = address
         self._open_browser = open_browser
@@ -119,12 +135,16 @@ class _Server(uvicorn.Server):
         self._application = application
         config = uvicorn.Config(
             self._application,
-            log_level="warning",
+            log_config=None,
             access_log=False,
             ws_per_message_deflate=False,
             ws_max_size=MESSAGE_LIMIT,
             timeout_graceful_shutdown=GRACE,
             server_header=False,
+            proxy_headers=bool(opening.proxies),
+            forwarded_allow_ips=list(opening.proxies),
+            ssl_certfile=opening.certificate,
+            ssl_keyfile=opening.key,
         )
         super().__init__(config)
 
@@ -168,10 +188,6 @@ def _prepare_data(folder: Path) -> None:
 
 
 def _listen(host: str, port: int) -> socket.socket:
-    if not _is_loopback(host):
-        raise ServeError(
-            f"{host} can be reached from outside, which needs a login that this version does not have; use 127.0.0.1"
-        )
     family = socket.AF_INET6 if ":" in host else socket.AF_INET
     # Asyncio sends at once only on what is called TCP; else an answer waits 40 ms for its reader's receipt.
     listener = socket.socket(family, socket.SOCK_STREAM, socket.IPPROTO_TCP)
@@ -189,15 +205,7 @@ def _listen(host: str, port: int) -> socket.socket:
     return listener
 
 
-def _is_loopback(host: str) -> bool:
-    if host == "localhost":
-        return True
-    try:
-        return ipaddress.ip_address(host).is_loopback
-    except ValueError:
-        return False
-
-
-def _address(listener: socket.socket) -> str:
+def _address(listener: socket.socket, opening: Opening) -> str:
     host, port = listener.getsockname()[:2]
-    return f"http://[{host}]:{port}" if ":" in host else f"http://{host}:{port}"
+    scheme = "https" if opening.is_secure else "http"
+    return f"{scheme}://[{host}]:{port}" if ":" in host else f"{scheme}://{host}:{port}"

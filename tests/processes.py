@@ -63,7 +63,7 @@ class Server:
         return poll(lambda: self.get("/state"), condition)
 
     def start_walking(self) -> None:
-        """As a person would: once more when a busy machine has made the rig let go."""
+        """Unattended: nobody has to be heard meanwhile. Once more when a busy machine has made the rig let go."""
         poll(self._is_walking, bool)
 
     def _is_walking(self) -> bool:
@@ -80,7 +80,7 @@ class Server:
         elif rig != "disarmed":
             self.post("/disarm")
         self.post("/arm")
-        self.post("/runs", {"gait": {"sweep_deg": 10.0}})
+        self.post("/runs", {"gait": {"sweep_deg": 10.0}, "unattended": True})
 
 
 def poll(ask: Callable[[], T], condition: Callable[[T], bool]) -> T:

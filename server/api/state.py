@@ -6,12 +6,13 @@ from importlib.metadata import version
 from itertools import islice
 from typing import Annotated, Any, Literal
 
-from fastapi import APIRouter, Query
+from fastapi import APIRouter, Query, Request, Response
 
 from server.api import ticks
 from server.api.access import TheRig
 from server.api.body import StrictRoute
 from server.event_log import event_json
+from server.watching.health import Pulse
 
 router = APIRouter(tags=["state"], route_class=StrictRoute)
 
@@ -20,8 +21,18 @@ Severity = Literal["info", "warn", "error"]
 VERSION = version("pivotrig")
 
 
-@router.get("/health")
-async def health() -> dict[str, str]:
+FAILING: dict[int | str, dict[str, Any]] = {
+    503: {"description": "The program does not do what it is there for; `reason` says why."}
+}
+
+
+@router.get("/health", responses=FAILING)
+async def health(request: Request, response: Response) -> dict[str, str]:
+    """Whether the control loop ticks; for supervisors. A rig in the fault state is a program that works."""
+    pulse: Pulse = request.app.state.pulse
+    if reason := pulse.failing:
+        response.status_code = 503
+        return {"status": "failing", "version": VERSION, "reason": reason}
     return {"status": "ok", "version": VERSION}
 
 

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, Protocol
+from typing import Any, Protocol, TypeVar
+
+T = TypeVar("T")
 
 
 class Attendance(Protocol):
@@ -37,3 +39,9 @@ Permit = Callable[[], None]
 
 def free() -> None:
     """The permit of whoever needs none."""
+
+
+def permitted(request: Callable[[], T], permit: Permit) -> T:
+    """Carry it out if it may be."""
+    permit()
+    return request()

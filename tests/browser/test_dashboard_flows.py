@@ -106,7 +106,11 @@ def test_from_the_first_visit_it_is_two_clicks_to_a_walking_robot(
 def test_a_path_is_drawn_with_one_stroke_and_walked(page: Page, workshop: ServedRig) -> None:
     tool(page, "Draw a path").click()
     x, y = place(workshop)
-    line = [(x + 0.6 * step, y + 16 * math.sin(math.pi * step / 60)) for step in range(61)]
+    ahead, aside = (
+        -math.copysign(0.6, x),
+        -math.copysign(16.0, y),
+    )  # inwards, wherever earlier walks have ended
+    line = [(x + ahead * step, y + aside * math.sin(math.pi * step / 60)) for step in range(61)]
     board(page).get_by_role("radio", name="Freehand").locator("xpath=..").click()
     Plate(workshop).drag(page, line)
     expect(board(page)).to_contain_text(re.compile(r"\d\d mm long"))
@@ -176,7 +180,7 @@ def test_a_study_is_started_stopped_and_resumed(page: Page, workshop: ServedRig,
     field(form, "Name").fill(name)
     form.get_by_label("Axis", exact=True).select_option("gait.sweep_deg")
     field(form, "Values in °").fill("20, 30")
-    field(form, "Runs of each set").fill("500")
+    field(form, "Runs of each set").fill("5000")
     form.get_by_text("Order, length and limits").click()
     field(form, "A run ends after").fill("3")
     button(form, "Start study").click()
@@ -187,7 +191,7 @@ def test_a_study_is_started_stopped_and_resumed(page: Page, workshop: ServedRig,
     button(study, "Stop study").click()
     expect(button(study, "Resume study")).to_be_enabled(timeout=A_WHILE * 1e3)
     halfway = done()
-    assert halfway < 1000
+    assert halfway < 10_000
     button(study, "Resume study").click()
     eventually(lambda: done() > halfway, "another run of the study", A_WHILE)
     button(study, "Stop study").click()

@@ -1,0 +1,1 @@
+"""What happens to a connection and a request before the application sees it."""
