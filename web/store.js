@@ -16,6 +16,8 @@ let state = {
   /** status: "connecting" | "open" | "silent" (no telemetry for a moment) | "lost"; cause in words; retryAt:
       performance.now() of the next try, ms; late_ms: how much older than new what comes is. */
   connection: { status: "connecting", cause: "", retryAt: null, late_ms: 0 },
+  /** Who operates (operator/lease.js): who this page is to the others, what it may, who commands, who asks for that. */
+  operator: { you: "", you_may: "administer", holder: null, asking: null, lease_s: 2, take_over_after_s: 10, heardAt: 0 },
   /** Newest telemetry tick, a few times a second (for text). */
   tick: null,
   rig: null,
@@ -140,11 +142,16 @@ function same(a, b) {
 
 let messageCount = 0;
 
-/** Shows a message until somebody dismisses it; the same words are shown once. @param {string} text */
-export function say(text, severity = "error") {
+/**
+ * Shows a message until somebody dismisses it; the same words are shown once.
+ * @param {string} text
+ * @param {string} [severity]
+ * @param {import("./types").Message["action"]} [action] what to do about it
+ */
+export function say(text, severity = "error", action = null) {
   if (state.messages.some((message) => message.text === text)) return;
   messageCount += 1;
-  set({ messages: [...state.messages, { id: messageCount, text, severity }].slice(-3) });
+  set({ messages: [...state.messages, { id: messageCount, text, severity, action }].slice(-3) });
 }
 
 /** @param {number} id */

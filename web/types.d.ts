@@ -51,7 +51,7 @@ export interface Tick {
   recording: {
     state: string; run: string | null; size_bytes: number; ticks_waiting: number; frames_left_out: number; failure: string;
   };
-  operator: any;
+  operator: { id: string; name: string; note: string } | null;
 }
 
 export type RigState = "disarmed" | "armed" | "running" | "held" | "fault";
@@ -141,7 +141,20 @@ export interface Connection {
   late_ms: number;
 }
 
-export interface Message { id: number; text: string; severity: string }
+/** GET /operator, and what is told of it since; heardAt: performance.now() then, ms. */
+export interface Operator {
+  you: string;
+  you_may: "view" | "operate" | "administer";
+  holder: { id: string; name: string; note: string; kind: "page" | "script"; since_s: number; silent_s: number } | null;
+  asking: { id: string; name: string; note: string; since_s: number } | null;
+  lease_s: number; take_over_after_s: number;
+  heardAt: number;
+}
+
+export interface Message {
+  id: number; text: string; severity: string;
+  action: { words: string; act: () => void } | null;
+}
 
 /** calibration/setup.js. */
 export interface Setup {
@@ -241,6 +254,7 @@ export interface FaultKind {
 
 export interface State {
   connection: Connection;
+  operator: Operator;
   tick: Tick | null;
   rig: Rig | null;
   camera: Camera | null;

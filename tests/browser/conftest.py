@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import json
 import os
 import re
 import shutil
@@ -10,7 +11,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from dashboard_visit import PATIENCE, OpenTab, ServedRig, Visit
+from dashboard_visit import CLIENT, PATIENCE, OpenTab, ServedRig, Visit
 from playwright.sync_api import Browser, expect, sync_playwright
 from rooms import Room, spread_over_rooms
 
@@ -19,6 +20,11 @@ CHROMIUM_ARGS = ("--no-sandbox", "--use-angle=gl-egl", "--ignore-gpu-blocklist",
 
 TOUR_SEEN = 'localStorage.setItem("pivotrig.tour", "done")'
 """What a browser remembers of a person who has been here before."""
+
+CALLED = """client => {
+  try { sessionStorage.setItem("pivotrig.client", client) } catch { /* a frame without an address */ }
+}"""
+"""What a tab calls itself, as if its page had been loaded before."""
 
 SCENE_PAGE = re.compile(r"^https?://[^/]+/scene/")
 
@@ -73,6 +79,7 @@ def tabs(browser: Browser) -> Iterator[OpenTab]:
     scene: where it is not looked at it may stay empty, since drawing it in software costs more than all the rest.
     tour: the browser has not seen it yet.
     room: the window, in place of a size.
+    client: what the tab calls itself; empty: what the page makes up.
     """
     visits: list[Visit] = []
     with contextlib.ExitStack() as stack:
@@ -85,9 +92,12 @@ def tabs(browser: Browser) -> Iterator[OpenTab]:
             scene: bool = True,
             tour: bool = False,
             room: Room | None = None,
+            client: str = CLIENT,
         ) -> Visit:
             context = browser.new_context(**(room or Room(width, height)).window())
             stack.callback(context.close)
+            if client:
+                context.add_init_script(f"({CALLED})({json.dumps(client)})")
             if not tour:
                 context.add_init_script(TOUR_SEEN)
             page = context.new_page()

@@ -32,6 +32,9 @@ document.addEventListener("securitypolicyviolation", ({ violatedDirective, block
 """
 """For each document of a tab, frames included: what its policy has kept it from."""
 
+CLIENT = "the person at the rig"
+"""What tabs and requests call themselves: they are one person's, who operates by any of them."""
+
 PATIENCE = 15.0
 """What a person would wait for on two cores with software WebGL, s."""
 
@@ -96,14 +99,15 @@ class ServedRig:
 
     def ask(self, path: str) -> dict[str, Any]:
         """GET, as JSON."""
-        with urllib.request.urlopen(f"{self.url}/api/v1{path}", timeout=5) as answer:
+        request = urllib.request.Request(f"{self.url}/api/v1{path}", headers={"X-Client": CLIENT})
+        with urllib.request.urlopen(request, timeout=5) as answer:
             return json.load(answer)
 
     def send(self, method: str, path: str, body: dict[str, Any] | None = None) -> None:
         request = urllib.request.Request(
             f"{self.url}/api/v1{path}",
             json.dumps(body or {}).encode(),
-            {"Content-Type": "application/json"},
+            {"Content-Type": "application/json", "X-Client": CLIENT},
             method=method,
         )
         with urllib.request.urlopen(request, timeout=5):

@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 
-import { patch, Problem, read, remove } from "../../web/live/rest.js";
+import { onRefusal, patch, post, Problem, read, remove } from "../../web/live/rest.js";
 
 const answering = (t, body, init) =>
   t.mock.method(globalThis, "fetch", async () => new Response(body === null ? null : JSON.stringify(body), init));
@@ -50,4 +50,22 @@ test("a silent server has no status, and nothing was changed", async (t) => {
 test("an answer that breaks off is a refusal, not half an answer", async (t) => {
   t.mock.method(globalThis, "fetch", async () => new Response('{"runs": [', { status: 200 }));
   await refusalOf(read("/runs"));
+});
+
+test("each request says from which tab it comes", async (t) => {
+  const { mock } = answering(t, {});
+  for (const ask of [() => read("/rig"), () => post("/arm", {}, { keepalive: true }), () => patch("/rig", {}), () => remove("/runs/1")]) await ask();
+  const names = mock.calls.map(({ arguments: [, { headers }] }) => headers["X-Client"]);
+  assert.match(names[0], /^[0-9a-f]{32}$/);
+  assert.deepEqual(names, Array(4).fill(names[0]));
+  assert.equal(mock.calls[1].arguments[1].headers["Content-Type"], "application/json");
+});
+
+test("whoever else is concerned hears of a refusal too, and who operates", async (t) => {
+  const heard = [];
+  onRefusal((problem) => void heard.push(problem));
+  answering(t, { title: "Somebody else operates", holder: { id: "a1", name: "Anna" } }, { status: 409 });
+  const problem = await refusalOf(post("/arm"));
+  assert.deepEqual(heard, [problem]);
+  assert.equal(problem.holder.name, "Anna");
 });

@@ -148,6 +148,17 @@ test("a closed line stays closed", (t) => {
   assert.equal(heard.causes.length, 0);
 });
 
+test("what the page says by itself goes out while the line is open, and is lost otherwise", (t) => {
+  const { socket } = visit(t);
+  const wire = newest();
+  socket.send("too early");
+  wire.open();
+  socket.send("heartbeat");
+  wire.breakOff();
+  socket.send("too late");
+  assert.deepEqual(wire.sent, ["heartbeat"]);
+});
+
 test("an answer goes out by the line on which the question came, while that is open", (t) => {
   const { heard } = visit(t);
   const wire = newest();

@@ -4,6 +4,7 @@ import { showTab } from "../journal/tab.js";
 import { trackingWords } from "../camera/tracking.js";
 import { KeySheet } from "../keys/sheet.js";
 import { stopNow } from "../live/stop.js";
+import { OperatorSign } from "../operator/sign.js";
 import { RecordingSign } from "../runs/sign.js";
 import { useStore } from "../store.js";
 import { quantity } from "../units.js";
@@ -29,6 +30,7 @@ export function Bar() {
       <${State} tick=${tick} />
       <${RecordingSign} recording=${tick?.recording} />
       <${Vitals} tick=${tick} />
+      <${OperatorSign} />
       <${KeySheet} />
       <button class="stop" type="button" onClick=${stopNow} aria-keyshortcuts="Escape Space" title="Coils to zero, at once (Escape or Space)">STOP</button>
     </header>

@@ -2,6 +2,7 @@
 import { reloadRigFile } from "../live/actions.js";
 import { isSlow } from "../live/greeting.js";
 import { live } from "../live/ticks.js";
+import { Questions } from "../operator/question.js";
 import { dismiss, useStore } from "../store.js";
 import { clock } from "../units.js";
 import { html, useEffect, useState } from "../view.js";
@@ -13,16 +14,22 @@ export function Notices({ retry }) {
       <${Outdated} />
       <${Connection} retry=${retry} />
       <${Slow} />
+      <${Questions} />
       <${EditedRigFile} />
       ${messages.map((message) => html`<${Message} key=${message.id} ...${message} />`)}
     </div>
   `;
 }
 
-function Message({ id, text, severity }) {
+function Message({ id, text, severity, action }) {
+  const act = () => {
+    dismiss(id);
+    action.act();
+  };
   return html`
     <div class="notice" data-severity=${severity} role="alert">
       <p>${text}</p>
+      ${action && html`<button type="button" onClick=${act}>${action.words}</button>`}
       <button class="quiet" type="button" onClick=${() => dismiss(id)}>Dismiss</button>
     </div>
   `;

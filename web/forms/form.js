@@ -21,13 +21,14 @@ import { fieldsOf, rangeOf, show } from "./schema.js";
  * @param {Object} props.values
  * @param {(name: string, value: any) => void} props.onChange
  * @param {(form: Form) => Standing | null} [props.standingOf]
+ * @param {boolean} [props.locked] to be read, not changed
  * @param {any} [props.children] further fields
  */
-export function SchemaForm({ section, of = section, schema, values, onChange, standingOf = () => null, children = null }) {
+export function SchemaForm({ section, of = section, schema, values, onChange, standingOf = () => null, locked = false, children = null }) {
   return html`
     <div class="fields">
       ${fieldsOf(schema).map((form) => html`
-        <${Field} key=${`${of}.${form.name}`} id=${`${section}.${form.name}`} of=${of} form=${form} standing=${standingOf(form)}
+        <${Field} key=${`${of}.${form.name}`} id=${`${section}.${form.name}`} of=${of} form=${form} locked=${locked} standing=${standingOf(form)}
           value=${form.name in values ? values[form.name] : form.initial} onChange=${(value) => onChange(form.name, value)} />
       `)}
       ${children}
@@ -44,9 +45,10 @@ const CONTROLS = { choice: Choice, switch: Switch, points: Points, number: Numbe
  * @param {Form} props.form
  * @param {any} props.value
  * @param {(value: any) => void} props.onChange
+ * @param {boolean} [props.locked]
  * @param {Standing | null} [props.standing]
  */
-export function Field({ id, of = "", form, value, onChange, standing = null }) {
+export function Field({ id, of = "", form, value, onChange, locked = false, standing = null }) {
   const own = useId();
   const texts = useStore((state) => ({ refused: state.draftErrors[id] ?? "", server: state.serverErrors[id] ?? "" }));
   const { refused } = texts;
@@ -66,9 +68,9 @@ export function Field({ id, of = "", form, value, onChange, standing = null }) {
       <div class="field-title">
         <label for=${own}>${form.title}${form.kind === "points" && form.unit ? `, ${form.unit}` : ""}</label>
         <${HelpButton} of=${of} form=${form} />
-        <${Reset} form=${form} changed=${refused !== "" || !isSame(value, form.initial)} reset=${reset} />
+        <${Reset} form=${form} changed=${!locked && (refused !== "" || !isSame(value, form.initial))} reset=${reset} />
       </div>
-      <${CONTROLS[form.kind] ?? TextEntry} ...${control} />
+      <fieldset role="presentation" disabled=${locked}><${CONTROLS[form.kind] ?? TextEntry} ...${control} /></fieldset>
       <p class="field-note" id=${`${own}-note`}>${note}</p>
       <p class="field-standing" id=${`${own}-standing`} data-state=${standing?.state} aria-live="polite">${standing && standing.state !== "quiet" && standing.words}</p>
       <p class="field-error" id=${`${own}-error`} aria-live="polite">${error}</p>

@@ -3,6 +3,7 @@ import { isAsked } from "../keys/typing.js";
 import { PAGE_ID } from "../live/page_id.js";
 import { post } from "../live/rest.js";
 import { heedStop } from "../live/stop.js";
+import { obstacleIn } from "../operator/words.js";
 import { get, set } from "../store.js";
 import { createHold } from "./hold.js";
 
@@ -17,10 +18,10 @@ const WAYS = {
 };
 
 /** Why nothing may be driven by hand just now, "" when it may. @param {import("../types").State} state */
-export function obstacleOf({ connection, tick }) {
+export function obstacleOf({ connection, tick, operator }) {
   if (connection.status !== "open") return "There is no connection to the rig: nothing is sent.";
   if (!tick) return "Waiting for the rig…";
-  return WAYS[tick.rig] ?? "";
+  return obstacleIn(operator) || (WAYS[tick.rig] ?? "");
 }
 
 function obstacle() {

@@ -1,8 +1,10 @@
 /** Keeps the telemetry stream open and says at any time how far what is shown can be believed. */
 import { get, say, set } from "../store.js";
+import { CLIENT, keepOverReload } from "./client.js";
+import { keepBeating } from "./heartbeat.js";
 import { load } from "./loading.js";
 import { receive } from "./messages.js";
-import { giveUpWaiting } from "./rest.js";
+import { giveUpWaiting, read } from "./rest.js";
 import { keepOpen } from "./socket.js";
 import { live } from "./ticks.js";
 
@@ -19,7 +21,9 @@ let openedAt = 0;
 /** @typedef {{retry: () => void, abandon: (cause: string) => void}} Line */
 
 export function connect() {
-  const socket = keepOpen("/api/v1/telemetry?rate_Hz=30", { open: () => opened(socket), message: receive, lost });
+  keepOverReload();
+  const socket = keepOpen(`/api/v1/telemetry?rate_Hz=30&client=${CLIENT}`, { open: () => opened(socket, beat), message: receive, lost });
+  const beat = keepBeating(socket.send);
   const look = () => watch(socket);
   setInterval(look, LOOK_MS);
   addEventListener("online", () => socket.retry());
@@ -30,9 +34,10 @@ export function connect() {
   return socket;
 }
 
-/** @param {Line} socket */
-async function opened(socket) {
+/** @param {Line} socket @param {() => void} beat */
+async function opened(socket, beat) {
   openedAt = performance.now();
+  beat();
   set({ connection: OPEN });
   try {
     await load();
@@ -47,6 +52,8 @@ async function opened(socket) {
 function lost(cause, retryAt) {
   giveUpWaiting();
   set({ connection: { status: "lost", cause, retryAt, late_ms: 0 } });
+  // A stream that is refused says not why; any other answer does (operator/refusals.js).
+  read("/operator").catch(() => {});
 }
 
 const silence = () => performance.now() - Math.max(live.receivedAt, openedAt);

@@ -1,5 +1,6 @@
 /** The server says who it is with its first words: another start of it, or another version than this page is of. */
 import { beginLogAnew } from "../log/listing.js";
+import { hearOfOperator } from "../operator/lease.js";
 import { get, say, set } from "../store.js";
 import { createLateness } from "./lateness.js";
 import { clearTrail } from "./ticks.js";
@@ -14,7 +15,7 @@ const RESTARTED =
 let start = "";
 let lateness = createLateness();
 
-/** @param {{start: string, page: string}} message */
+/** @param {{start: string, page: string, you: string, you_may: import("../types").Operator["you_may"]}} message */
 export function greet(message) {
   lateness = createLateness();
   set({ outdated: message.page !== OWN });
@@ -25,6 +26,7 @@ export function greet(message) {
     say(RESTARTED, "info");
   }
   start = message.start;
+  hearOfOperator({ you: message.you, you_may: message.you_may });
 }
 
 /** The server's time with every few ticks: whatever is late comes after it. @param {{server_s: number}} message */

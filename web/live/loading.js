@@ -1,6 +1,7 @@
 /** Reads what the page is made from: at each new connection, and again where the rig has changed. */
 import { loadEvents } from "../log/listing.js";
 import { loadFaults } from "../faults/catalogue.js";
+import { loadOperator } from "../operator/lease.js";
 import { loadRuns } from "../runs/listing.js";
 import { get, say, set } from "../store.js";
 import { loadStudies } from "../studies/listing.js";
@@ -14,6 +15,7 @@ export async function load() {
   loadRuns();
   loadStudies();
   loadEvents();
+  loadOperator();
   const [rig, camera, controllers, trajectories, gaitSchema, selection, newest] = await Promise.all(
     ["/rig", "/camera", "/controllers", "/trajectories", "/gait", "/selection", "/runs?limit=1"].map(read),
   );

@@ -5,6 +5,7 @@ import { endIfReplayed } from "../replay/replay.js";
 import { tellIfAway } from "../notify/device.js";
 import { reloadIfInspected } from "../runs/inspected.js";
 import { hearOfRun } from "../runs/listing.js";
+import { hearOfOperator } from "../operator/lease.js";
 import { get, say, set } from "../store.js";
 import { hearOfStudy } from "../studies/listing.js";
 import { greet, hearClock } from "./greeting.js";
@@ -34,6 +35,7 @@ const complain = (problem) => say(problem.message);
 const handlers = {
   server: greet,
   clock: hearClock,
+  operator: hearOfOperator,
   tick(tick) {
     publish(tick);
     const shown = get().tick;

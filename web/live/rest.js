@@ -1,4 +1,5 @@
 /** The REST calls: JSON in, JSON out, problem+json turned into one kind of error. */
+import { CLIENT } from "./client.js";
 
 /** A refusal by the server (or its silence), in words; `fields` maps "controller.gain" to what is wrong with it. */
 export class Problem extends Error {
@@ -7,12 +8,14 @@ export class Problem extends Error {
    * @param {number} [status] of HTTP; 0: there was no answer
    * @param {Record<string, string>} [fields]
    * @param {any[]} [errors] each offending value as the server names it: {loc, message}
+   * @param {any} [holder] who operates in place of this page, when it is that
    */
-  constructor(text, status = 0, fields = {}, errors = []) {
+  constructor(text, status = 0, fields = {}, errors = [], holder = null) {
     super(text);
     this.status = status;
     this.fields = fields;
     this.errors = errors;
+    this.holder = holder;
   }
 }
 
@@ -33,7 +36,14 @@ function fieldTexts(errors) {
 async function problemOf(response) {
   const body = await response.json().catch(() => ({}));
   const text = body.detail || body.title || `The server answered ${response.status}.`;
-  return new Problem(text, response.status, fieldTexts(body.errors), body.errors ?? []);
+  return new Problem(text, response.status, fieldTexts(body.errors), body.errors ?? [], body.holder);
+}
+
+let heed = /** @type {(problem: Problem) => void} */ (() => {});
+
+/** @param {(problem: Problem) => void} listener hears of each refusal, whoever asked */
+export function onRefusal(listener) {
+  heed = listener;
 }
 
 /** Ends every request that waits for an answer. */
@@ -48,13 +58,20 @@ export function giveUpWaiting() {
   ended = new AbortController();
 }
 
+/** @param {Problem} problem */
+function heeded(problem) {
+  heed(problem);
+  return problem;
+}
+
 /** @param {string} path below /api/v1 @param {RequestInit} options @returns {Promise<any>} the answer's JSON */
 async function request(path, options) {
   const signal = options.signal ?? (options.keepalive ? null : ended.signal);
-  const response = await fetch(`/api/v1${path}`, { ...options, signal }).catch(() => {
+  const headers = { ...options.headers, "X-Client": CLIENT };
+  const response = await fetch(`/api/v1${path}`, { ...options, headers, signal }).catch(() => {
     throw new Problem(signal?.aborted ? CUT_OFF : UNREACHABLE);
   });
-  if (!response.ok) throw await problemOf(response);
+  if (!response.ok) throw heeded(await problemOf(response));
   if (response.status === 204) return null;
   return response.json().catch(() => {
     throw new Problem(BROKEN_OFF);

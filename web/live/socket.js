@@ -19,7 +19,7 @@ function causeOf(event) {
  * @param {string} path
  * @param {{message: (data: any, send: (text: string) => void) => void, open?: () => void,
  *          lost?: (cause: string, retryAt: number, code: number | null) => void}} handlers
- * @returns {{close: () => void, retry: () => void, abandon: (cause: string) => void}}
+ * @returns {{close: () => void, retry: () => void, abandon: (cause: string) => void, send: (text: string) => void}} send: while it is open
  */
 export function keepOpen(path, handlers) {
   /** @type {WebSocket | null} */
@@ -69,5 +69,5 @@ export function keepOpen(path, handlers) {
   }
 
   connect();
-  return { close, abandon, retry: () => socket === null && !closed && connect() };
+  return { close, abandon, send: (text) => socket?.readyState === WebSocket.OPEN && socket.send(text), retry: () => socket === null && !closed && connect() };
 }
