@@ -161,7 +161,7 @@ def wrong_token() -> Problem:
     return Problem(
         401,
         "Wrong token",
-        "This is no token of this rig, or not any more; `pivotrig token make` on its computer makes a new one.",
+        "This is no token of this rig, or not any more; `pivotrig token new` on its computer makes a new one.",
         headers=CHALLENGE,
     )
 

@@ -95,7 +95,7 @@ def guard_for(host: str, opening: Opening, data: Path) -> Guard:
 def tell_first_token(token: str) -> None:
     print(
         f"admin token (shown this once): {token}\n"
-        "Log in with it, or make others with: pivotrig token make viewer | operator | admin",
+        "Log in with it, or make others with: pivotrig token new viewer | operator | admin",
         file=sys.stderr,
         flush=True,
     )

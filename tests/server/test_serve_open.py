@@ -116,12 +116,12 @@ def token_command(data: Path, *words: str):
 
 
 def test_tokens_are_made_listed_and_revoked_by_a_command(tmp_path: Path):
-    made = token_command(tmp_path, "make", "viewer")
+    made = token_command(tmp_path, "new", "viewer")
     assert made.returncode == 0
     token = made.stdout.strip()
     assert token not in made.stderr
     assert Tokens(tmp_path / FILE).role_of(token) is Role.VIEWER
-    token_command(tmp_path, "make")
+    token_command(tmp_path, "new")
     assert token_command(tmp_path, "list").stdout.split() == ["viewer", "admin"]
     assert "is revoked" in token_command(tmp_path, "revoke", "viewer").stderr
     assert "There was no viewer token" in token_command(tmp_path, "revoke", "viewer").stderr
