@@ -30,8 +30,8 @@ REFUSED = {
     "beacon": True,
     "done": True,
 }
-"""What a page of another site gets. What it may send without asking (a plain request, a beacon, a form) is sent, and refused:
-the rig shows that nothing came of it."""
+"""What a page of another site gets. What it may send without asking (a plain request, a beacon, a form) is sent, and
+refused: the rig shows that nothing came of it."""
 
 ROOMS: dict[str, tuple[int, int]] = {"desk": (1440, 900), "phone": (390, 844)}
 
