@@ -15,6 +15,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from control.snapshot import RigState
 from server.api.problems import Problem, Rejected
 from server.lease import words
 from server.lease.lease import LEASE, TAKE_OVER_AFTER, Asked, Lease, NobodyAsks, NotTheHolder, Party, Turn
@@ -90,9 +91,11 @@ class LeaseDesk:
     # Commands ------------------------------------------------------------------------------------
 
     def hand(self, caller: Caller) -> Hand:
-        """To command with; a free lease is taken. Raises `Rejected` where somebody else has it."""
+        """To command with; a free lease is taken, and so is that of a silent holder while nothing is switched on: a
+        script that has ended keeps no rig from the next one. Raises `Rejected` where somebody else has it."""
         key, now = key_of(caller), self._clock()
-        if self.lease.holder is None:
+        is_idle = self._rig.snapshot.rig is RigState.DISARMED
+        if self.lease.holder is None or (is_idle and self.lease.is_silent(now)):
             self.ask(caller)
         elif not self.lease.is_held_by(key):
             raise self._somebody_else(self.lease.holder)

@@ -192,11 +192,20 @@ async def test_everybody_is_told_of_each_change(at, ada):
 
 
 async def test_a_silent_holder_keeps_its_place_until_somebody_takes_it(at, ada, bob):
-    await act(ada, "/operator")
+    await arm(ada)
     await silent(at)
     await act(bob, "/manual", 409, pivot=1, rate_deg_s=0.0)
     assert (await operator(bob))["holder"]["name"] == "Ada"
     assert (await act(bob, "/operator"))["holder"]["name"] == "Bob"
+    assert (await ada.post("/arm")).json()["holder"]["name"] == "Bob"
+
+
+async def test_a_script_that_has_ended_keeps_no_rig_at_rest_from_the_next_one(at, ada, bob):
+    await act(ada, "/operator")
+    await act(bob, "/reset", 409)
+    await silent(at)
+    await arm(bob)
+    assert (await operator(bob))["holder"]["name"] == "Bob"
     assert (await ada.post("/arm")).json()["holder"]["name"] == "Bob"
 
 

@@ -1,0 +1,18 @@
+"""Swing the robot by hand for two seconds. Each order holds for 0.3 s at most, so a script that dies stops it."""
+
+import time
+
+from rig import rig, wait_for
+
+with rig("a jog") as client:
+    before = wait_for(client, lambda state: state["tracking"] == "locked")["pose"]["heading_deg"]
+    client.post("/arm")
+    try:
+        end = time.monotonic() + 2.0
+        while time.monotonic() < end:
+            client.post("/manual", json={"pivot": 1, "rate_deg_s": 20})
+            time.sleep(0.1)
+        after = client.get("/state").json()["pose"]["heading_deg"]
+    finally:
+        client.post("/disarm")
+    print(f"turned by {(after - before + 180) % 360 - 180:.0f}°")
