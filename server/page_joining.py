@@ -112,7 +112,9 @@ class Joiner:
     def _exported_again(self, name: str) -> str:
         names = list(self._exports(self.part(name)))
         if name == self._entry and names:
-            raise NotUnderstood(f"{name} exports {', '.join(names)}, but nobody imports what a page begins with")
+            raise NotUnderstood(
+                f"{name} exports {', '.join(names)}, but nobody imports what a page begins with"
+            )
         taken = ",".join(f"{each}:$_{place}" for place, each in enumerate(names))
         given = ",".join(f"$_{place} as {each}" for place, each in enumerate(names))
         return f"const{{{taken}}}={kept(name)};export{{{given}}};" if names else ""

@@ -12,13 +12,13 @@ import { adoptSelection } from "./selection.js";
 const EDIT_LOST = "The last change of the settings had not been sent when the connection broke; the rig's own are shown.";
 
 export async function load() {
+  // Asked for first: what is seen first is made from it, and a browser asks for six things at a time.
+  const first = Promise.all(["/rig", "/camera", "/controllers", "/trajectories", "/gait", "/selection", "/runs?limit=1"].map(read));
+  loadOperator();
   loadRuns();
   loadStudies();
   loadEvents();
-  loadOperator();
-  const [rig, camera, controllers, trajectories, gaitSchema, selection, newest] = await Promise.all(
-    ["/rig", "/camera", "/controllers", "/trajectories", "/gait", "/selection", "/runs?limit=1"].map(read),
-  );
+  const [rig, camera, controllers, trajectories, gaitSchema, selection, newest] = await first;
   set({ rig, camera, controllers, trajectories, gaitSchema });
   if (adoptSelection(selection)) say(EDIT_LOST, "info");
   if (rig.simulated) loadFaults();
