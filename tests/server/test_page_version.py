@@ -112,6 +112,20 @@ async def test_a_page_from_before_an_upgrade_gets_no_module_of_the_new_one(
     assert "newer = 1" in (await client.get(f"{new}main.js")).text
 
 
+async def test_a_module_that_cannot_be_sent_is_told_of_and_open_pages_keep_theirs(
+    folder: Path, client: httpx.AsyncClient
+) -> None:
+    old = re.findall(r'src="([^"]+)main.js"', (await client.get("/")).text)[0]
+    (folder / "c.js").write_text("export let c = 1;\n")
+    told = await client.get("/")
+    assert (told.status_code, told.headers["cache-control"]) == (500, "no-store")
+    assert "c.js:1" in told.text
+    assert "export let" in told.text
+    assert (await client.get(f"{old}later.js")).status_code == 200
+    (folder / "c.js").write_text("export const c = 1;\n")
+    assert (await client.get("/")).status_code == 200
+
+
 async def test_nothing_beside_the_page_is_served_as_part_of_it(
     folder: Path, client: httpx.AsyncClient
 ) -> None:
