@@ -53,6 +53,8 @@ toolchain:
 	@bash .ci/need --program g++ g++
 	@bash .ci/need --file /usr/include/simavr/sim_avr.h libsimavr-dev
 	@bash .ci/need --file /usr/include/libelf.h libelf-dev
+	@bash .ci/need --program openssl openssl
+	@bash .ci/need --program curl curl
 
 .stamps/run: pyproject.toml uv.lock
 	@bash .ci/environment --no-dev

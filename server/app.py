@@ -49,6 +49,7 @@ from server.api import (
     trajectories,
     vision,
 )
+from server.api.document import document
 from server.api.study_json import StudyJson
 from server.api.ticks import TickText
 from server.calibration.camera import CameraCalibration
@@ -148,6 +149,7 @@ def create_app(
         docs_url=None,
         redoc_url=None,
         lifespan=lifespan,
+        generate_unique_id_function=document.operation_id,
     )
     app.state.start = uuid4().hex
     app.state.rig = rig
@@ -177,6 +179,7 @@ def create_app(
     app.add_middleware(Door, hosts=opening.hosts, guard=guard, origins=opening.origins)
     app.add_middleware(Counting, tally=app.state.clients)
     problems.install(app)
+    document.install(app)
     add_routes(app)
     return app
 

@@ -123,7 +123,7 @@ def serve(
         list[str] | None, typer.Option(help="Another site whose pages may use the rig; may be repeated.")
     ] = None,
     proxy: Annotated[
-        list[str] | None, typer.Option(help="Address of a proxy that may speak for others; may be repeated.")
+        list[str] | None, typer.Option(help="Address of a proxy that may speak for others; demands a token.")
     ] = None,
     tls_cert: Annotated[Path | None, typer.Option(help="Certificate for https, PEM.")] = None,
     tls_key: Annotated[Path | None, typer.Option(help="Its key, PEM, without a password.")] = None,

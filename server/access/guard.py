@@ -44,11 +44,10 @@ class Admitted:
 
 
 class Guard:
-    """tokens: None where nobody needs one.  has_proxy: a named proxy may speak for others."""
+    """tokens: None where nobody needs one."""
 
-    def __init__(self, tokens: Tokens | None = None, has_proxy: bool = False, clock: Clock = time.monotonic):
+    def __init__(self, tokens: Tokens | None = None, clock: Clock = time.monotonic) -> None:
         self._tokens = tokens
-        self._has_proxy = has_proxy
         self._attempts = Attempts(clock)
         self.sessions = Sessions(clock)
 
@@ -60,7 +59,7 @@ class Guard:
         """Who this is, or the answer that they get instead of what they asked for."""
         headers = Headers(scope=scope)
         if self._tokens is None:
-            if not self._has_proxy and (found := [name for name in FORWARDED if name in headers]):
+            if found := [name for name in FORWARDED if name in headers]:
                 return unnamed_proxy(found).response()
             return Admitted(introduced(scope, Role.ADMIN, "here"))
         if is_open(scope["path"]) and scope["type"] == "http":
@@ -162,7 +161,7 @@ def wrong_token() -> Problem:
     return Problem(
         401,
         "Wrong token",
-        "This is no token of this rig, or not any more; `pivotrig token make` on its computer makes a new one.",
+        "This is no token of this rig, or not any more; `pivotrig token new` on its computer makes a new one.",
         headers=CHALLENGE,
     )
 
@@ -185,6 +184,6 @@ def unnamed_proxy(headers: Collection[str]) -> Problem:
     return Problem(
         403,
         "Unnamed proxy",
-        f"This request came through a proxy ({', '.join(headers)}), behind which anybody could stand. Start pivotrig "
-        "with --proxy ADDRESS to name the proxy, and with --demand-token unless it checks who asks.",
+        f"This request came through a proxy ({', '.join(headers)}), behind which anybody could stand, and this server "
+        "asks nobody for a token. Start pivotrig with --proxy ADDRESS, which names the proxy and demands tokens.",
     )

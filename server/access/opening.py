@@ -78,23 +78,24 @@ def check_certificate(certificate: Path, key: Path) -> None:
 def guard_for(host: str, opening: Opening, data: Path) -> Guard:
     """The guard of a server that listens on `host`; raises `OpeningError`.
 
-    Away from loopback tokens are demanded. The first start makes the admin's and tells it once, on stderr.
+    Away from loopback, and behind a proxy, tokens are demanded. The first start makes the admin's and tells it once,
+    on stderr.
     """
-    if is_loopback(host) and not opening.demand_token:
-        return Guard(has_proxy=bool(opening.proxies))
+    if is_loopback(host) and not opening.demand_token and not opening.proxies:
+        return Guard()
     path = data / tokens.FILE
     try:
         if Role.ADMIN not in tokens.load(path):
             tell_first_token(tokens.make(path, Role.ADMIN))
     except tokens.TokenFileError as error:
         raise OpeningError(str(error)) from error
-    return Guard(tokens.Tokens(path), has_proxy=bool(opening.proxies))
+    return Guard(tokens.Tokens(path))
 
 
 def tell_first_token(token: str) -> None:
     print(
         f"admin token (shown this once): {token}\n"
-        "Log in with it, or make others with: pivotrig token make viewer | operator | admin",
+        "Log in with it, or make others with: pivotrig token new viewer | operator | admin",
         file=sys.stderr,
         flush=True,
     )

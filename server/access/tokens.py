@@ -44,7 +44,7 @@ def load(path: Path) -> dict[Role, str]:
         return {}
     except (OSError, ValueError) as error:
         raise TokenFileError(
-            f"cannot read the tokens in {path}: {error}; remove it and make new ones with: pivotrig token make"
+            f"cannot read the tokens in {path}: {error}; remove it and make new ones with: pivotrig token new"
         ) from error
     if not isinstance(kept, dict) or not all(_is_entry(name, digest) for name, digest in kept.items()):
         raise TokenFileError(f"{path} does not hold tokens of pivotrig; remove it and make new ones")

@@ -59,7 +59,7 @@ class RetrackBody(Edge):
 
 
 @router.post("/runs/{run_id}/retrack", status_code=202)
-async def start(finished: TheFinished, body: RetrackBody, rig: TheRig, desk: TheDesk) -> dict[str, Any]:
+async def look_again(finished: TheFinished, body: RetrackBody, rig: TheRig, desk: TheDesk) -> dict[str, Any]:
     """Look at its pictures again; what comes of it is asked for under the same address."""
     changes = body.changes(rig)
     await asyncio.to_thread(_check, finished, changes)

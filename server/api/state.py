@@ -22,7 +22,10 @@ VERSION = version("pivotrig")
 
 
 FAILING: dict[int | str, dict[str, Any]] = {
-    503: {"description": "The program does not do what it is there for; `reason` says why."}
+    503: {
+        "description": "The program does not do what it is there for; `reason` says why.",
+        "content": {"application/json": {"schema": {"type": "object"}}},
+    }
 }
 
 

@@ -37,7 +37,7 @@ def token() -> None:
 
 
 @app.command()
-def make(role: RoleArgument = RoleName.ADMIN, data: DataOption = None) -> None:
+def new(role: RoleArgument = RoleName.ADMIN, data: DataOption = None) -> None:
     """Print a new token of the role. The one before it, and all that it had opened, ends at once."""
     try:
         made = tokens.make(_file(data), role.role)

@@ -42,9 +42,10 @@ PATIENCE = 15.0
 class ServedRig:
     """One `pivotrig serve --sim` process; it can be killed and started again on its port."""
 
-    def __init__(self, data: Path, *options: str) -> None:
-        """options: which rig, in place of the simulated one."""
+    def __init__(self, data: Path, *options: str, token: str = "") -> None:
+        """options: which rig, in place of the simulated one.  token: that requests show."""
         self.data = data
+        self._headers = {"X-Client": CLIENT} | ({"Authorization": f"Bearer {token}"} if token else {})
         self._options = options or ("--sim",)
         self._process: subprocess.Popen[str] | None = None
         self._first_selection: dict[str, Any] | None = None
@@ -99,7 +100,7 @@ class ServedRig:
 
     def ask(self, path: str) -> dict[str, Any]:
         """GET, as JSON."""
-        request = urllib.request.Request(f"{self.url}/api/v1{path}", headers={"X-Client": CLIENT})
+        request = urllib.request.Request(f"{self.url}/api/v1{path}", headers=self._headers)
         with urllib.request.urlopen(request, timeout=5) as answer:
             return json.load(answer)
 
@@ -107,7 +108,7 @@ class ServedRig:
         request = urllib.request.Request(
             f"{self.url}/api/v1{path}",
             json.dumps(body or {}).encode(),
-            {"Content-Type": "application/json", "X-Client": CLIENT},
+            {"Content-Type": "application/json", **self._headers},
             method=method,
         )
         with urllib.request.urlopen(request, timeout=5):

@@ -61,6 +61,14 @@ EVENTS = (
         "ask for it, or take it over", "test_lease_race",
     ),
     OutsideEvent(
+        "Somebody without a token, from elsewhere", "that a token is needed", "as it is", "–", "log in",
+        "test_access_door",
+    ),
+    OutsideEvent(
+        "A page of another site in the operator's browser", "nothing: it is refused", "as it is", "–", "nothing to do",
+        "test_dashboard_login",
+    ),
+    OutsideEvent(
         "Study interrupted", "how far it came; finished runs stay as they are", "ended", "as for what interrupted it",
         "resume the study", "test_study_interrupted",
     ),

@@ -20,9 +20,11 @@ BOW = {
 
 @pytest.fixture
 def paths():
-    """Nothing that a test saves is left for the next one."""
+    """Nothing that another module's tests saved is there, and nothing that a test saves is left for the next one."""
+    paths = CustomTrajectories()
+    forget_all(paths)
     before = set(trajectories)
-    yield CustomTrajectories()
+    yield paths
     for name in set(trajectories) - before:
         trajectories.forget(name)
 

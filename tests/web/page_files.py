@@ -5,6 +5,8 @@ from pathlib import Path
 
 WEB = Path(__file__).parents[2] / "web"
 START = WEB / "main.js"
+LOGIN = WEB / "login" / "login.js"
+"""The only module of a page of its own, for who has yet to show a token."""
 # `import … from "x"`, `export … from "x"` and `import "x"`; and, anywhere, `import("x")`.
 STATED = re.compile(r"""^(?:import|export)\b(?:[^;"'`]*?\bfrom)?\s*["']([^"'\n]+)["']""", re.MULTILINE)
 LATER = re.compile(r"""\bimport\(\s*["']([^"'\n]+)["']""")
