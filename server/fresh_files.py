@@ -14,6 +14,7 @@ from starlette.responses import PlainTextResponse, Response
 from starlette.staticfiles import StaticFiles
 from starlette.types import Scope
 
+from server.page_imports import NotUnderstood
 from server.page_version import STAMP_LENGTH, PageFile, PageVersion, stamp_of, version_of
 
 ALWAYS_ASK = {"Cache-Control": "no-cache"}
@@ -36,14 +37,25 @@ class FreshFiles(StaticFiles):
         self._version: PageVersion | None = None
 
     async def version(self) -> PageVersion:
-        """The version that is in the folder now."""
+        """The version that is in the folder now; the one before it while somebody writes on a module."""
+        try:
+            return await self._newest()
+        except NotUnderstood:
+            if self._version is None:
+                raise
+            return self._version
+
+    async def _newest(self) -> PageVersion:
         stamp = await asyncio.to_thread(stamp_of, self._folder)
         if self._version is None or self._version.stamp != stamp:
             self._version = await asyncio.to_thread(version_of, self._folder, stamp)
         return self._version
 
     async def page(self, request: Request) -> Response:
-        version = await self.version()
+        try:
+            version = await self._newest()
+        except NotUnderstood as error:
+            return PlainTextResponse(str(error), 500, {"Cache-Control": "no-store"})
         headers = {**ALWAYS_ASK, "ETag": f'"{version.stamp}"'}
         if request.headers.get("if-none-match") == headers["ETag"]:
             return Response(status_code=304, headers=headers)

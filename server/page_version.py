@@ -14,12 +14,17 @@ from functools import cached_property, lru_cache
 from pathlib import Path, PurePosixPath
 from posixpath import normpath
 
+from server.page_imports import NotUnderstood
+from server.page_joining import Joiner
 from server.page_text import code_alone
 
 STATIC = "/static/"
 """Where the page's files are, in addresses that the page itself is written with."""
 
 ENTRY = "main.js"
+SHEET = "page.css"
+"""All style sheets of the page, in their order; none of its files has this name."""
+
 NOT_OF_THE_PAGE = ("vendor/swagger",)
 """Has a page of its own, and is larger than all the rest."""
 
@@ -29,12 +34,14 @@ MEDIA_TYPES = {
     ".css": "text/css; charset=utf-8",
     ".html": "text/html; charset=utf-8",
     ".svg": "image/svg+xml",
+    ".map": "application/json",
 }
 """What is part of the page, by the end of its name."""
 
+MODULE_ENDINGS = (".js", ".mjs")
+MAP_ENDING = ".map"
 STAMP_LENGTH = 12
-IMPORT = re.compile(r"""^(?:import|export)\b[^"';()]*["']([^"']+)["']""", re.MULTILINE)
-"""A static import; an `import()` is loaded later, when it is needed."""
+SHEET_LINK = re.compile(r' *<link rel="stylesheet" href="/static/[0-9a-f]+/([^"]+)">\n')
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,50 +74,68 @@ def page_paths(folder: Path) -> list[tuple[str, Path]]:
 def version_of(folder: Path, stamp: str) -> PageVersion:
     """Made once for all applications of a process, with what a page asks for first ready to be sent."""
     version = PageVersion(folder, stamp)
-    for name in version.modules():
+    for name in (ENTRY, SHEET, *version.loaded_later()):
         version.file(name)
     return version
 
 
 class PageVersion:
-    """All files of the page, read at once; every address in them that begins with /static/ names the version."""
+    """All files of the page, read at once; every address in them that begins with /static/ names the version.
+
+    Each module is sent with all that it needs and that the page has not begun with (`server/page_joining.py`).
+    """
 
     def __init__(self, folder: Path, stamp: str) -> None:
         self.stamp = stamp
+        self._own = f"{STATIC}{stamp}/"
         self._texts = {
-            name: path.read_text(encoding="utf-8").replace(f'"{STATIC}', f'"{STATIC}{stamp}/')
+            name: path.read_text(encoding="utf-8").replace(f'"{STATIC}', f'"{self._own}')
             for name, path in page_paths(folder)
         }
+        self._joiner = Joiner(self._code, self._name_of, ENTRY, self._own)
         self._files: dict[str, PageFile] = {}
 
     def file(self, name: str) -> PageFile | None:
-        """A file by its name in the folder; compressed when it is first asked for."""
-        if name not in self._files and name in self._texts:
-            text = self._texts[name]
-            content = (code_alone(text) if name.endswith(".js") else text).encode()
+        """What is sent under a name in the folder; made and compressed when it is first asked for."""
+        if name not in self._files and (text := self._sent(name)) is not None:
+            content = text.encode()
             media_type = MEDIA_TYPES[PurePosixPath(name).suffix]
             self._files[name] = PageFile(content, gzip.compress(content, mtime=0), media_type)
         return self._files.get(name)
 
+    def _sent(self, name: str) -> str | None:
+        module = name.removesuffix(MAP_ENDING)
+        if module in self._texts and module.endswith(MODULE_ENDINGS):
+            join = self._joiner.join(module)
+            return join.text if module == name else join.source_map(self._texts.__getitem__)
+        if name == SHEET:
+            return "\n".join(self._texts[each] for each in SHEET_LINK.findall(self._texts["index.html"]))
+        return self._texts.get(name)
+
     @cached_property
     def index(self) -> bytes:
-        """The page itself, which announces all modules that it begins with: none waits until another names it."""
-        links = "".join(
-            f'    <link rel="modulepreload" href="{STATIC}{self.stamp}/{name}">\n' for name in self.modules()
-        )
-        head, end, rest = self._texts["index.html"].partition("  </head>")
-        return (head + links + end + rest).encode()
+        """The page itself, which asks for one style sheet in the place of the first of those that it names."""
+        link = f'    <link rel="stylesheet" href="{self._own}{SHEET}">\n'
+        page = SHEET_LINK.sub(link, self._texts["index.html"], count=1)
+        kept, found, rest = page.partition(link)
+        return (kept + found + SHEET_LINK.sub("", rest)).encode()
 
     def modules(self, entry: str = ENTRY) -> list[str]:
-        """Names of all modules that `entry` imports, directly or not, those nearest to it first."""
-        found = [entry]
-        for name in found:
-            asked = (self._name_of(each, name) for each in IMPORT.findall(self._texts.get(name, "")))
-            found += [each for each in dict.fromkeys(asked) if each not in found]
-        return [name for name in found if name in self._texts]
+        """Names of all modules that `entry` needs at once, each after those that it imports."""
+        return self._joiner.needed(entry)
+
+    def loaded_later(self) -> list[str]:
+        """Names of the modules that a page may ask for after it has begun."""
+        return self._joiner.loaded_later()
+
+    def _code(self, name: str) -> str:
+        text = self._texts[name]
+        return code_alone(text) if name.endswith(".js") else text
 
     def _name_of(self, address: str, importer: str) -> str:
-        own = f"{STATIC}{self.stamp}/"
-        if address.startswith(own):
-            return address.removeprefix(own)
-        return normpath((PurePosixPath(importer).parent / address).as_posix())
+        name = address.removeprefix(self._own)
+        if name == address:
+            name = normpath((PurePosixPath(importer).parent / address).as_posix())
+        if name not in self._texts:
+            raise NotUnderstood(f"{importer} imports {address!r}, which is no file of the page")
+        return name

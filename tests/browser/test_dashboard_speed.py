@@ -14,6 +14,9 @@ pytestmark = pytest.mark.exclusive
 
 MEANINGFUL = 1000.0
 """Until bar, picture and run panel stand with data, ms on the browser's stopwatch."""
+FEW = 6
+"""Files of ours that a first visit asks for: a sheet, the first script, those of charts and runs, an icon, one more."""
+LEAST_SCRIPTS = 3
 LOADS = 5
 """A computer that does something else in between gets another try."""
 SHORT = 8.0
@@ -70,12 +73,28 @@ def test_the_page_paints_within_a_second_and_in_full_stands_with_data(
         assert min(float(times["stands"]) for times in tries) <= MEANINGFUL
 
 
+def test_a_first_visit_asks_for_few_files_and_stands_with_live_data(
+    served: ServedRig, browser: Browser
+) -> None:
+    context = browser.new_context(viewport={"width": 1440, "height": 900})
+    asked: list[str] = []
+    context.on("request", lambda request: asked.append(request.url))
+    try:
+        seen(context, served.url)
+    finally:
+        context.close()
+    files = [url for url in asked if "/static/" in url]
+    print(files)
+    assert LEAST_SCRIPTS < len(files) <= FEW
+    assert len(set(files)) == len(files)
+
+
 def test_a_second_visit_asks_for_no_module_again(served: ServedRig, browser: Browser) -> None:
     context = browser.new_context()
     try:
         for visit in ("first", "second"):
             sizes = seen(context, served.url)["modules"]
-            assert len(sizes) > 50
+            assert len(sizes) >= LEAST_SCRIPTS
             assert (sum(sizes) == 0) == (visit == "second")
     finally:
         context.close()

@@ -57,11 +57,16 @@ def test_another_content_is_another_version_and_the_same_is_the_same(folder: Pat
     assert stamp_of(folder) != before
 
 
-def test_what_is_imported_at_once_is_announced_and_what_is_loaded_later_is_not(folder: Path) -> None:
+def test_what_is_imported_at_once_comes_with_the_first_module_and_what_is_loaded_later_does_not(
+    folder: Path,
+) -> None:
     version = PageVersion(folder, "0123456789ab")
-    assert version.modules() == ["main.js", "part/a.js", "b.mjs", "c.js"]
-    announced = re.findall(r'modulepreload" href="([^"]+)"', version.index.decode())
-    assert announced == [f"/static/0123456789ab/{name}" for name in version.modules()]
+    assert version.modules() == ["c.js", "b.mjs", "part/a.js", "main.js"]
+    assert version.loaded_later() == ["later.js"]
+    assert re.findall(r'/static/[^"]+', version.index.decode()) == ["/static/0123456789ab/main.js"]
+    first = version.file("main.js")
+    assert first is not None
+    assert re.findall(r'modules\["([^"]+)"\]\?\?=', first.content.decode()) == version.modules()
 
 
 def test_each_module_of_the_dashboard_finds_the_modules_that_it_imports() -> None:
@@ -81,7 +86,10 @@ async def test_the_files_of_a_version_are_kept_for_good_and_come_compressed(
     assert (await client.get("/", headers={"If-None-Match": page.headers["etag"]})).status_code == 304
     address = re.findall(r'src="([^"]+)"', page.text)[0]
     answer = await client.get(address)
-    assert answer.text == code_alone((folder / "main.js").read_text())
+    sent = PageVersion(folder, stamp_of(folder)).file("main.js")
+    assert sent is not None
+    assert answer.content == sent.content
+    assert code_alone((folder / "c.js").read_text()).replace("export ", "") in answer.text
     assert "immutable" in answer.headers["cache-control"]
     assert answer.headers["content-encoding"] == "gzip"
     plain = await client.get(address, headers={"Accept-Encoding": "identity"})
@@ -101,7 +109,21 @@ async def test_a_page_from_before_an_upgrade_gets_no_module_of_the_new_one(
     assert refused.status_code == 404
     assert refused.headers["cache-control"] == "no-store"
     assert "reload" in refused.text
-    assert "newer = 1" in (await client.get(f"{new}b.mjs")).text
+    assert "newer = 1" in (await client.get(f"{new}main.js")).text
+
+
+async def test_a_module_that_cannot_be_sent_is_told_of_and_open_pages_keep_theirs(
+    folder: Path, client: httpx.AsyncClient
+) -> None:
+    old = re.findall(r'src="([^"]+)main.js"', (await client.get("/")).text)[0]
+    (folder / "c.js").write_text("export let c = 1;\n")
+    told = await client.get("/")
+    assert (told.status_code, told.headers["cache-control"]) == (500, "no-store")
+    assert "c.js:1" in told.text
+    assert "export let" in told.text
+    assert (await client.get(f"{old}later.js")).status_code == 200
+    (folder / "c.js").write_text("export const c = 1;\n")
+    assert (await client.get("/")).status_code == 200
 
 
 async def test_nothing_beside_the_page_is_served_as_part_of_it(

@@ -12,17 +12,24 @@ import { adoptSelection } from "./selection.js";
 const EDIT_LOST = "The last change of the settings had not been sent when the connection broke; the rig's own are shown.";
 
 export async function load() {
+  // Asked for first, since a browser asks for six things at a time: what is seen first is made from these.
+  const first = Promise.all([loadStanding(), read("/runs?limit=1")]);
+  loadOperator();
   loadRuns();
   loadStudies();
   loadEvents();
-  loadOperator();
-  const [rig, camera, controllers, trajectories, gaitSchema, selection, newest] = await Promise.all(
-    ["/rig", "/camera", "/controllers", "/trajectories", "/gait", "/selection", "/runs?limit=1"].map(read),
+  const [, newest] = await first;
+  follow(newest.runs.find((/** @type {import("../types").Run} */ { state }) => state === "running") ?? null);
+}
+
+/** The rig, what can be chosen, and what is chosen. */
+async function loadStanding() {
+  const [rig, camera, controllers, trajectories, gaitSchema, selection] = await Promise.all(
+    ["/rig", "/camera", "/controllers", "/trajectories", "/gait", "/selection"].map(read),
   );
   set({ rig, camera, controllers, trajectories, gaitSchema });
   if (adoptSelection(selection)) say(EDIT_LOST, "info");
   if (rig.simulated) loadFaults();
-  follow(newest.runs.find((/** @type {import("../types").Run} */ { state }) => state === "running") ?? null);
 }
 
 /** The run that goes on, with its settings and the picture of its path. @param {import("../types").Run | null} run */
