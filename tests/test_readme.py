@@ -54,6 +54,20 @@ def test_the_script_of_the_readme_works(tmp_path: Path) -> None:
         assert server.get("/state")["rig"] == "fault"
 
 
+def test_what_the_readme_asks_with_curl_is_answered(tmp_path: Path) -> None:
+    whole = "\n".join(blocks("sh")).replace("\\\n", " ").splitlines()
+    asked = [line.split("   #")[0] for line in whole if line.startswith("curl ")]
+    assert len(asked) >= 8
+    with served(tmp_path, "--sim") as server:
+        server.until(lambda state: state["tracking"] == "locked" and not state["faults"])
+        for line in asked:
+            here = line.replace("localhost:8000", server.address) + " --fail-with-body"
+            answer = subprocess.run(
+                ["bash", "-c", here], capture_output=True, text=True, timeout=60, check=False
+            )
+            assert answer.returncode == 0, line + answer.stdout
+
+
 def test_the_rig_file_of_the_readme_is_valid(tmp_path: Path) -> None:
     (text,) = (block for block in blocks("toml") if "[limits]" in block)
     rig_file = tmp_path / "rig.toml"
