@@ -2,12 +2,11 @@
 
 from pathlib import Path
 
-from rig import rig, wait_for
+from rig import armed, rig, wait_for
 
 with rig("an eight") as client:
     wait_for(client, lambda state: state["tracking"] == "locked")
-    client.post("/arm")
-    try:
+    with armed(client):
         run = client.post(
             "/runs",
             json={
@@ -21,8 +20,6 @@ with rig("an eight") as client:
             },
         ).json()
         wait_for(client, lambda state: state["run"] is None or state["rig"] != "running", timeout_s=120)
-    finally:
-        client.post("/disarm")
     done = client.get(f"/runs/{run['id']}").json()
     print(
         f"{done['state']}: mean error {done['metrics']['mean_error_mm']:.2f} mm in {done['metrics']['steps']} steps"

@@ -13,5 +13,6 @@ with rig("my paths") as client:
         )
     shown = client.post("/trajectories/preview", json={"name": "my bow"}).json()
     print(f"{shown['length_mm']:.1f} mm in {shown['duration_s']:.1f} s")
-    client.put("/selection", json={"trajectory": {"name": "my bow", "parameters": {}}})
+    selection = client.get("/selection").json()
+    client.put("/selection", json=selection | {"trajectory": {"name": "my bow", "parameters": {}}})
     print("chosen:", client.get("/selection").json()["trajectory"]["name"])

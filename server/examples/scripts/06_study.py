@@ -17,7 +17,7 @@ DEFINITION = {
 
 with rig("a study") as client:
     study = client.post("/studies", json={"definition": DEFINITION}).json()
-    while study["done"] < study["total"]:
+    while study["state"] in ("planned", "running"):
         time.sleep(0.5)
         study = client.get(f"/studies/{study['id']}").json()
         print(f"{study['state']}: {study['done']} of {study['total']}")

@@ -28,13 +28,25 @@ def rig(name: str) -> Iterator[httpx.Client]:
     """A client of the rig's interface, which lets others operate when it ends. The name is what they see until then."""
     headers = {"X-Client": name} | ({"Authorization": f"Bearer {TOKEN}"} if TOKEN else {})
     hooks = {"response": [told]}
-    with httpx.Client(
-        base_url=f"{ADDRESS}/api/v1", headers=headers, timeout=30.0, event_hooks=hooks
-    ) as client:
-        try:
-            yield client
-        finally:
-            client.delete("/operator")
+    address = f"{ADDRESS}/api/v1"
+    try:
+        with httpx.Client(base_url=address, headers=headers, timeout=30.0, event_hooks=hooks) as client:
+            try:
+                yield client
+            finally:
+                client.delete("/operator")
+    except httpx.TransportError as error:
+        sys.exit(f"{ADDRESS}: {error}. Is this the rig's address, and does its server run?")
+
+
+@contextmanager
+def armed(client: httpx.Client) -> Iterator[None]:
+    """Current may flow within; afterwards it may not, whatever has happened meanwhile."""
+    client.post("/arm")
+    try:
+        yield
+    finally:
+        client.post("/disarm")
 
 
 def wait_for(client: httpx.Client, holds, timeout_s: float = 60.0) -> dict:
