@@ -75,8 +75,8 @@ class Crowd:
         async with connect(url, additional_headers=self.headers(name), max_size=None, proxy=None) as line:
             async for message in line:
                 self.counts["telemetry messages"] += 1
-                if "NaN" in message or "Infinity" in message:
-                    self.wrong.append(f"telemetry sends what is no JSON: {message[:200]}")
+                if not isinstance(message, str) or "NaN" in message or "Infinity" in message:
+                    self.wrong.append(f"telemetry sends what is no JSON: {message[:200]!r}")
 
     async def camera(self, name: str) -> None:
         view = self.chance.choice(("raw", "overlay", "mask"))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import threading
 import time
 from collections.abc import Iterator
@@ -21,18 +22,26 @@ PATIENCE = 20.0
 GOES_ON_WITHIN = 90.0
 """After the last fault was taken away the robot walks again within this time, s; a hot coil has to rest first."""
 LOOKS_AGAIN = 0.1
+PUT_BACK_AFTER = 8.0
+"""A robot that is not found again so long after the last fault is put back by hand, s, as an operator would."""
+HOME = {"x_mm": 0.0, "y_mm": -42.0, "heading_deg": 90.0}
+"""Where the simulated robot stands at the beginning."""
 REFUSED = 409, 422
 ENERGISING = "/arm", "/runs", "/runs/current/resume", "/manual"
 
 
 class Hand:
-    """Commands over REST. asked: when it last asked for current, monotonic, s."""
+    """Commands over REST. asked: when it last asked for current, monotonic, s.
+
+    put_back: how often it had to put the robot back by hand.
+    """
 
     def __init__(self, address: str) -> None:
         self._http = httpx.Client(
             base_url=f"{address}/api/v1", headers={"X-Client": NAME}, timeout=PATIENCE, trust_env=False
         )
         self.asked = 0.0
+        self.put_back = 0
         self._is_silent = threading.Event()
         self._ended = threading.Event()
         self._pulse = threading.Thread(target=self._stay_heard, name="pulse of the operator")
@@ -97,11 +106,16 @@ class Hand:
 
     def until(self, rig: str, walk: Walk) -> dict[str, Any]:
         """On to `armed` or `running` from wherever the rig is; the state."""
-        give_up = time.monotonic() + GOES_ON_WITHIN
+        began = time.monotonic()
+        give_up, put_back = began + GOES_ON_WITHIN, began + PUT_BACK_AFTER
         while (state := self.state)["rig"] != rig:
             if time.monotonic() > give_up:
                 faults = [fault["message"] for fault in state["faults"]]
                 raise InvariantBroken(f"it does not go on: {state['rig']}, {state['reason']}; {faults}")
+            if state["tracking"] != "locked" and time.monotonic() > put_back:
+                put_back = math.inf
+                self.put_back += 1
+                self.inject({"name": "robot_put", "parameters": HOME})
             if not self._step(state, rig, walk):
                 time.sleep(LOOKS_AGAIN)
         return state

@@ -100,10 +100,12 @@ class LiveRules:
             return
         if self._rested_since is None:
             self._rested_since, self._rested_arrival = self._now, arrived
-        if any(commanded):
-            raise InvariantBroken(f"I3: {commanded} A are commanded while {tick['rig']}: {tick['reason']}")
         gone_by = self._rested_since + self.electrics.decay * 1e-3 + REPORT_LATE
         if self._now > gone_by and self._sees(tick):
+            if any(commanded):
+                raise InvariantBroken(
+                    f"I3: {commanded} A are commanded while {tick['rig']}: {tick['reason']}"
+                )
             for axis, current, limit in zip("xyz", measured, self.electrics.currents, strict=True):
                 if not abs(current) <= GONE * limit:
                     raise InvariantBroken(

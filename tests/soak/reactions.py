@@ -65,10 +65,10 @@ def is_excused(entry: dict[str, Any], starved: float) -> bool:
 def _said(entry: dict[str, Any], starved: float) -> str:
     promise, reaction = entry["promise"], entry["reaction"]
     return (
-        f"{entry['name']}: promised {' or '.join(promise['states'])}, noticed in {promise['noticed_ms']} ms, no current "
-        f"after {promise['gone_ms']} ms; it became {reaction['became']} ({reaction['reason']}), noticed in "
-        f"{reaction['noticed_ms']} ms, no current after {reaction['gone_ms']} ms; kept from the processor for "
-        f"{starved * MS:.0f} ms meanwhile"
+        f"{entry['name']}: promised {' or '.join(promise['states'])}, noticed in {promise['noticed_ms']} ms, "
+        f"no current after {promise['gone_ms']} ms; it became {reaction['became']} ({reaction['reason']}), "
+        f"noticed in {reaction['noticed_ms']} ms, no current after {reaction['gone_ms']} ms; "
+        f"kept from the processor for {starved * MS:.0f} ms meanwhile"
     )
 
 

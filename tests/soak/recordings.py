@@ -10,6 +10,7 @@ from pathlib import Path
 
 from control.simulation.lockstep import Sample
 from server.recording.reading.recording import Recording, Unreadable
+from server.recording.reading.tick_reading import Tick
 from tests.faults.invariants import LONGEST_PERIOD, Electrics, check_limits, check_recording
 from tests.soak.broken import InvariantBroken
 from tests.soak.live_rules import ON
@@ -19,6 +20,11 @@ ROUNDING = 1e-4
 LONG_SHARE = 0.02
 """Share of the ticks outside faults that may come later than the longest period of a rig with a computer of its own:
 the load has both processors too, and what it takes now and then is told, while more is a loop that is not unharmed."""
+
+OFF_WITHIN = 0.35
+"""A report that comes so long after the rig went to rest is of a board without drive, s: a slow line's 150 ms behind
+the dead-man's 200 ms."""
+TOPICS = frozenset({"/state", "/currents", "/field"})
 
 Window = tuple[float, float]
 """Rig times between which a fault itself may hold the loop up, s."""
@@ -81,7 +87,8 @@ class Auditor:
             with Recording.open(path) as recording:
                 if is_whole and not recording.is_whole:
                     raise InvariantBroken(f"I5: {path.name} has no end")
-                times = [self._checked(time, tick) for time, tick in _ticks(recording)]
+                rest = Rest()
+                times = [self._checked(tick, rest) for tick in _ticks(recording)]
                 broken = recording.damaged_chunks + recording.unread_messages
         except Unreadable as error:
             raise InvariantBroken(f"I5: {error}") from error
@@ -97,19 +104,38 @@ class Auditor:
             raise InvariantBroken(f"I5: there is no recording of the run {run}")
         return found
 
-    def _checked(self, time: float, tick: dict[str, dict]) -> float:
+    def _checked(self, tick: Tick, rest: Rest) -> float:
+        """Its rig time, s."""
         x, y, z = tick["/currents"]["commanded_A"]
+        state, board = tick["/state"], tick["/field"]
+        time = state["time_s"]
         check_limits([Sample(round(time * 1e3), (x, y, z), (0, 0, 0))], self.electrics, ROUNDING)
-        state = tick["/state"]
-        if state["rig"] not in ON and any((x, y, z)):
+        told = board.get("board_received_s", -math.inf)
+        if rest.forbids(state["rig"] in ON, time, told) and (board["is_on"] or any((x, y, z))):
             raise InvariantBroken(
                 f"I3: {x}, {y}, {z} A are commanded while {state['rig']} at {time:.2f} s: {state['reason']}"
             )
         return time
 
 
-def _ticks(recording: Recording) -> Iterator[tuple[float, dict[str, dict]]]:
+@dataclass(slots=True)
+class Rest:
+    """Whether the board has said so late in a rest that it must be without drive."""
+
+    _since: float | None = None
+
+    def forbids(self, is_on: bool, time: float, told: float) -> bool:
+        """is_on: the rig may drive.  told: when the board's newest report came, s."""
+        if is_on:
+            self._since = None
+            return False
+        if self._since is None:
+            self._since = time
+        return told > self._since + OFF_WITHIN
+
+
+def _ticks(recording: Recording) -> Iterator[Tick]:
     """Those that are complete: the last one of a recording that was cut short may not be."""
-    for tick in recording.ticks(topics=("/state", "/currents")):
-        if "/state" in tick and "/currents" in tick:
-            yield tick["/state"]["time_s"], tick
+    for tick in recording.ticks(topics=TOPICS):
+        if tick.keys() >= TOPICS:
+            yield tick

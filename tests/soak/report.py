@@ -12,6 +12,7 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
+from tests.soak.reactions import Kept
 from tests.soak.soak import Outcome
 
 MB = 1e6
@@ -112,6 +113,7 @@ def figures(outcome: Outcome) -> dict[str, Any]:
             "longest period, ms": pace.worst * 1e3,
         }
     if stage is not None:
+        found["robot put back by hand"] = stage.hand.put_back
         rules = stage.watcher.rules
         found |= {
             "largest current, %": 100.0 * rules.largest,
@@ -136,8 +138,17 @@ def result(outcome: Outcome) -> dict[str, Any]:
         "figures": figures(outcome),
         "counts": dict(stage.counts) if stage is not None else {},
         "load_counts": dict(load.counts) if load is not None else {},
-        "reactions": {name: asdict(kept) for name, kept in kinds.items()},
+        "reactions": {name: kept_json(kept) for name, kept in kinds.items()},
         "memory": [[round(look.at, 1), look.memory.held, look.memory.anonymous] for look in outcome.looks],
+    }
+
+
+def kept_json(kept: Kept) -> dict[str, Any]:
+    return {
+        "verdicts": dict(kept.verdicts),
+        "noticed_ms": kept.noticed_ms,
+        "gone_ms": kept.gone_ms,
+        "promised_ms": kept.promised_ms,
     }
 
 

@@ -12,8 +12,9 @@ from typing import Any
 import httpx
 from websockets.sync.client import connect
 
+from server.fault_watch import LOOK
 from tests.soak.broken import InvariantBroken
-from tests.soak.hand import Hand
+from tests.soak.hand import HOME, Hand
 from tests.soak.process import Served, starved
 from tests.soak.reactions import Reactions
 from tests.soak.recordings import Window
@@ -31,6 +32,8 @@ KEPT_RUNS = 6
 """Of the runs that are over, when some are deleted."""
 INSTANTS = 8
 """Of a recording that are asked for in a replay."""
+BY_HAND = {"robot_put": HOME, "coil_hot": {"heat_percent": 0.0}}
+"""What mends those faults that happen once and stay: the robot is put back, the coil has cooled down."""
 FORMATS = "samples.csv", "samples.parquet", "plot.png", "recording.mcap"
 
 REFUSALS: tuple[tuple[str, str, str, tuple[int, ...]], ...] = (
@@ -82,15 +85,32 @@ class Stage:
             self.hand.inject(fault.body)
         self._watch_for(act.seconds)
         waited = starved(waits, self.served.waits())
-        entries = {entry["name"]: entry for entry in self.hand.get("/simulation/faults")["faults"]}
-        self.hand.clear()
-        self.watcher.end()
-        time.sleep(MENDED)
+        entries = self._verdicts(names)
+        self._mend(names)
         self.windows.append((state["time_s"] - 0.1, self.hand.state["time_s"] + MENDED))
         if len(act.faults) == 1:
             fault = act.faults[0]
             self.counts[self.reactions.judge(entries[fault.name], waited, fault.is_usual)] += 1
         self.hand.until("running", act.walk)
+
+    def _verdicts(self, names: frozenset[str]) -> dict[str, dict[str, Any]]:
+        """The server's entries of these faults, by name, when it has made up its mind."""
+        until = time.monotonic() + LOOK + MENDED
+        while True:
+            faults = self.hand.get("/simulation/faults")["faults"]
+            entries = {entry["name"]: entry for entry in faults if entry["name"] in names}
+            if all(entry["reaction"]["verdict"] != "watching" for entry in entries.values()):
+                return entries
+            if time.monotonic() > until:
+                raise InvariantBroken(f"{' and '.join(names)}: no verdict {LOOK:g} s later: {entries}")
+            self._watch_for(0.2)
+
+    def _mend(self, names: frozenset[str]) -> None:
+        self.hand.clear()
+        for name in names & BY_HAND.keys():
+            self.hand.inject({"name": name, "parameters": BY_HAND[name]})
+        self.watcher.end()
+        time.sleep(MENDED)
 
     def _note(self, state: dict[str, Any], names: frozenset[str]) -> None:
         """What the recording of the run that is on must have."""
@@ -181,7 +201,7 @@ class Stage:
         runs = self.hand.get("/runs?limit=100")["runs"]
         return [run for run in runs if run["state"] != "running" and run["recording"]["state"] != "writing"]
 
-    def export(self, act: Act) -> None:
+    def export(self, _: Act) -> None:
         for run in self.finished()[:1]:
             for name in FORMATS:
                 answer = self.hand.call("GET", f"/runs/{run['id']}/{name}")
@@ -189,7 +209,7 @@ class Stage:
                     raise InvariantBroken(f"{name} of {run['id']}: {answer.status_code} {answer.text[:300]}")
                 self.counts[name] += 1
 
-    def replay(self, act: Act) -> None:
+    def replay(self, _: Act) -> None:
         for run in self.finished()[:1]:
             address = self.served.address.replace("http", "ws", 1)
             with connect(f"{address}/api/v1/replay?run={run['id']}", proxy=None, max_size=None) as line:
