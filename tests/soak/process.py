@@ -107,13 +107,15 @@ def starved(before: Mapping[int, float], after: Mapping[int, float]) -> float:
 
 @contextmanager
 def served(data: Path, log: Path, seed: int) -> Iterator[Served]:
-    """A server of the simulated rig on a free port; what it says goes to `log`. Killed at the end if it still runs."""
+    """A server of the simulated rig on a free port; what it says goes to `log`.
+
+    It knows no rig file but its own defaults. Killed at the end if it still runs."""
     command = [sys.executable, "-m", "server", "serve", "--sim", "--port", "0", "--data", str(data)]
-    environment = {**os.environ, "PYTHONHASHSEED": str(seed % 2**32)}
+    own = {"PYTHONHASHSEED": str(seed % 2**32), "XDG_DATA_HOME": str(data.parent)}
     with (
         log.open("w") as words,
         subprocess.Popen(
-            command, stdout=subprocess.PIPE, stderr=words, text=True, env=environment
+            command, stdout=subprocess.PIPE, stderr=words, text=True, env={**os.environ, **own}
         ) as process,
     ):
         try:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from itertools import islice
@@ -32,7 +32,9 @@ WARM_BY = 390.0
 """What a process may keep is counted after this share of a soak, at the latest so long after its beginning, s: a round
 of the schedule."""
 SETTLES_WITHIN = 20.0
-"""After the load has gone, s: idle threads of the server's pools end, closed sockets are found out."""
+"""After the load has gone no process that makes an export is left so soon, s."""
+SETTLES_AFTER = 4.0
+"""Closed sockets are found out by then, s."""
 THREADS = 6
 """Of the pools, which begin them when they are needed: at most as many as a pool of two processors has."""
 FILES = 3
@@ -78,7 +80,7 @@ class Outcome:
 class Soak:
     """tell: hears of each act before it is played."""
 
-    def __init__(self, plan: Plan, tell) -> None:
+    def __init__(self, plan: Plan, tell: Callable[[Outcome], None]) -> None:
         self.outcome = Outcome(plan)
         self._tell = tell
         self._ended = threading.Event()
@@ -198,9 +200,11 @@ def at_rest(stage: Stage, load: Load) -> Belongings:
     load.leave()
     stage.hand.clear()
     stage.hand.must("POST", "/disarm")
-    until = time.monotonic() + SETTLES_WITHIN
+    began = time.monotonic()
     least = stage.served.belongings()
-    while time.monotonic() < until and (least.children or time.monotonic() < until - SETTLES_WITHIN / 2.0):
+    while (rested := time.monotonic() - began) < SETTLES_AFTER or (
+        least.children and rested < SETTLES_WITHIN
+    ):
         time.sleep(0.5)
         now = stage.served.belongings()
         least = Belongings(
