@@ -17,10 +17,12 @@ from tests.soak.live_rules import ON
 
 ROUNDING = 1e-4
 """Share of its limit by which a commanded current, which is rounded, may pass it."""
-LONG_SHARE = 0.02
-"""Share of the ticks outside faults that may come later than the longest period of a rig with a computer of its own:
-the load has both processors too, and what it takes now and then is told, while more is a loop that is not unharmed."""
-
+LONG_SHARE = 0.01
+"""Share of the ticks outside faults that may come later than the longest period of a rig with a computer of its own
+without a reason; exports and replays take the interpreter for a moment (measured: 0.7 %)."""
+SHORTEST_WAIT = LONGEST_PERIOD - 1.0 / 60.0
+"""What makes a tick of a camera of 60 Hz so late, s: so many of the late ones are the machine's, whose load has both
+processors too, for each such time that the rig was kept from a processor."""
 OFF_WITHIN = 0.35
 """A report that comes so long after the rig went to rest is of a board without drive, s: a slow line's 150 ms behind
 the dead-man's 200 ms."""
@@ -58,12 +60,14 @@ class Pace:
     def worst(self) -> float:
         return max(self.periods, default=math.nan)
 
-    def check(self) -> None:
-        """I6."""
-        if self.long_share > LONG_SHARE:
+    def check(self, starved: float) -> None:
+        """I6. starved: how long the rig was kept from the processor in all, s."""
+        late = sum(period > LONGEST_PERIOD for period in self.periods)
+        allowed = LONG_SHARE * len(self.periods) + starved / SHORTEST_WAIT
+        if late > allowed:
             raise InvariantBroken(
-                f"I6: {100 * self.long_share:.1f} % of the ticks without a fault came later than "
-                f"{1e3 * LONGEST_PERIOD:.0f} ms after the last; {100 * LONG_SHARE:.0f} % are allowed"
+                f"I6: of {len(self.periods)} ticks without a fault {late} came later than {1e3 * LONGEST_PERIOD:.0f} ms"
+                f" after the last; {allowed:.0f} may, with {starved:.1f} s in which the rig was kept from the processor"
             )
 
 

@@ -18,7 +18,7 @@ from tests.soak.growth import Growth, Look, growth_of
 from tests.soak.hand import Hand
 from tests.soak.live_rules import LiveRules
 from tests.soak.load import Load, load_on
-from tests.soak.process import Belongings, Served, served
+from tests.soak.process import Belongings, Served, served, starved
 from tests.soak.recordings import Auditor
 from tests.soak.scenes import Stage
 from tests.soak.schedule import Act, acts
@@ -63,6 +63,8 @@ class Outcome:
     auditor: Auditor | None = None
     load: Load | None = None
     belongings: list[Belongings] = field(default_factory=list)
+    starved: float = 0.0
+    """How long the rig was kept from the processor in all, s."""
     ended_in: float | None = None
     broken: str = ""
     broken_at: float = 0.0
@@ -108,7 +110,9 @@ class Soak:
             self._looking_at(server),
         ):
             outcome.began = time.monotonic()
+            waits = server.waits()
             self._play()
+            outcome.starved = starved(waits, server.waits())
             self._end(server)
 
     def _play(self) -> None:
@@ -145,7 +149,7 @@ class Soak:
         outcome.ended_in = server.end()
         load.leave()
         check_left(*outcome.belongings)
-        auditor.pace.check()
+        auditor.pace.check(outcome.starved)
         growth = outcome.growth
         if growth is not None:
             growth.check()

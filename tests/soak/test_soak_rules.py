@@ -138,11 +138,12 @@ def test_a_board_at_rest_may_not_drive_once_it_must_have_heard() -> None:
 def test_a_loop_that_is_often_late_without_a_fault_is_noticed() -> None:
     pace = Pace()
     pace.add([0.0, 1.0, 1.02, 1.04], except_for=[(0.5, 1.01)])
-    pace.check()
+    pace.check(0.0)
     late = [number * (LONGEST_PERIOD + 0.01) for number in range(10)]
     pace.add(late, except_for=())
+    pace.check(starved=0.5)
     with pytest.raises(AssertionError, match="I6"):
-        pace.check()
+        pace.check(starved=0.1)
 
 
 def looks(growth: float, minutes: int) -> Growth:
