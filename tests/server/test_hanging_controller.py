@@ -11,7 +11,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from websockets.sync.client import Connection, connect
+from websockets.sync.client import connect
+from websockets.sync.connection import Connection
 
 from control.simulation.lockstep import RemoteBoard
 from server.watchdog import Watchdog

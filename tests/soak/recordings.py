@@ -39,7 +39,8 @@ class Pace:
     periods: list[float] = field(default_factory=list)
 
     def add(self, times: Iterable[float], except_for: Iterable[Window]) -> None:
-        windows = tuple(except_for)
+        times = list(times)
+        windows = [w for w in except_for if times and w[0] <= times[-1] and times[0] <= w[1]]
         last: float | None = None
         for time in times:
             if last is not None and not any(since <= time <= until for since, until in windows):

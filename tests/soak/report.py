@@ -12,6 +12,7 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
+from tests.soak.growth import Growth
 from tests.soak.reactions import Kept
 from tests.soak.soak import Outcome
 
@@ -94,34 +95,40 @@ def _number(value: float | None) -> str:
 
 def figures(outcome: Outcome) -> dict[str, Any]:
     """Of memory, pace and what was left behind."""
-    found: dict[str, Any] = {}
-    growth, auditor, stage = outcome.growth, outcome.auditor, outcome.stage
-    if growth is not None:
-        found |= {
-            "memory when warm, MB": growth.warm.held / MB,
-            "memory at the end, MB": growth.last.held / MB,
-            "growth, %": 100.0 * growth.share,
-            "anonymous when warm, MB": growth.warm.anonymous / MB,
-            "anonymous at the end, MB": growth.last.anonymous / MB,
-            "memory judged": growth.is_judged,
-        }
-    if auditor is not None and auditor.pace.periods:
-        pace = auditor.pace
-        found |= {
-            "rate, Hz": pace.rate,
-            "late ticks, %": 100.0 * pace.long_share,
-            "longest period, ms": pace.worst * 1e3,
-        }
-    if stage is not None:
-        found["robot put back by hand"] = stage.hand.put_back
+    found = {**_memory(outcome.growth), **_pace(outcome)}
+    if (stage := outcome.stage) is not None:
         rules = stage.watcher.rules
-        found |= {
-            "largest current, %": 100.0 * rules.largest,
-            "slowest line of the log, s": rules.slowest_line,
-        }
+        found["robot put back by hand"] = stage.hand.put_back
+        found["largest current, %"] = 100.0 * rules.largest
+        found["slowest line of the log, s"] = rules.slowest_line
     for name, each in zip(("warm", "at the end"), outcome.belongings, strict=False):
         found[f"left at rest, {name}"] = ", ".join(f"{value} {what}" for what, value in asdict(each).items())
     return found | {"gone after SIGTERM, s": outcome.ended_in}
+
+
+def _memory(growth: Growth | None) -> dict[str, Any]:
+    if growth is None:
+        return {}
+    return {
+        "memory when warm, MB": growth.warm.held / MB,
+        "memory at the end, MB": growth.last.held / MB,
+        "growth, %": 100.0 * growth.share,
+        "anonymous when warm, MB": growth.warm.anonymous / MB,
+        "anonymous at the end, MB": growth.last.anonymous / MB,
+        "memory judged": growth.is_judged,
+    }
+
+
+def _pace(outcome: Outcome) -> dict[str, Any]:
+    if outcome.auditor is None or not outcome.auditor.pace.periods:
+        return {}
+    pace = outcome.auditor.pace
+    return {
+        "rate, Hz": pace.rate,
+        "late ticks, %": 100.0 * pace.long_share,
+        "longest period, ms": 1e3 * pace.worst,
+        "kept from the processor, s": outcome.starved,
+    }
 
 
 def result(outcome: Outcome) -> dict[str, Any]:
