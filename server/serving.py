@@ -30,6 +30,7 @@ from server.custom_trajectories import NAME as TRAJECTORIES
 from server.door import MESSAGE_LIMIT
 from server.exchange import Build
 from server.garbage import set_aside
+from server.reception.connections import IDLE_TIME, PatientProtocol, allow_files
 from server.rig import Rig
 from server.rig_changes import RigChanges
 from server.rig_file import RigStore
@@ -41,6 +42,10 @@ from vision.sources.opening import CameraError
 GRACE = 2
 """Seconds that open streams get at shutdown; the coils are zero long before."""
 
+
+SEND_BUFFER = 64 << 10
+"""What the system keeps of what a client has not read, bytes; connections inherit it. With the system's own megabytes
+a client that never reads would be found out after a minute."""
 
 TURN = 0.0002
 """How long another thread may keep the interpreter while the rig's thread waits for it, s. Python's own 5 ms would
@@ -66,6 +71,7 @@ def serve_rig(
 ) -> None:
     """Serve until a signal comes; raises `ServeError`. as_run: makes of the file's rig the one that runs."""
     _prepare_data(data)
+    allow_files()
     guard = _guard(place, data)
     listener = _listen(place.host, place.port)
     sys.setswitchinterval(TURN)
@@ -135,6 +141,8 @@ class _Server(uvicorn.Server):
         self._application = application
         config = uvicorn.Config(
             self._application,
+            http=PatientProtocol,
+            timeout_keep_alive=IDLE_TIME,
             log_config=None,
             access_log=False,
             ws_per_message_deflate=False,
@@ -193,6 +201,7 @@ def _listen(host: str, port: int) -> socket.socket:
     listener = socket.socket(family, socket.SOCK_STREAM, socket.IPPROTO_TCP)
     try:
         listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        listener.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, SEND_BUFFER)
         listener.bind((host, port))
         listener.listen(128)
     except OSError as error:

@@ -6,6 +6,7 @@ import http
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from itertools import islice
 from typing import Any
 
 from fastapi import FastAPI, Request, WebSocket
@@ -21,6 +22,9 @@ from control.wrong_values import SECRET_FIELDS
 from server.catalogue.errors import BadCursor, CatalogueError, NoSuchRun, NotNow
 
 SHOWN_LENGTH = 80
+
+MOST_ERRORS = 100
+"""Offending fields that are listed of one request; who sends more has another problem."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,7 +69,7 @@ def not_found(detail: str) -> Rejected:
 
 def invalid(errors: Iterable[Mapping[str, Any]]) -> Problem:
     """A body or query whose fields are not acceptable; nothing has been changed."""
-    listed = tuple(errors)
+    listed = tuple(islice(errors, MOST_ERRORS))
     words = "; ".join(
         f"{error['field']}: {error['message']}" if error["field"] else error["message"] for error in listed
     )
@@ -87,7 +91,8 @@ def offence(location: Iterable[Any], message: str, allowed: str = "") -> dict[st
 
 def offences(errors: Iterable[Mapping[str, Any]], prefix: tuple[str | int, ...] = ()) -> list[dict[str, Any]]:
     """Pydantic's list of errors, in words, without the values that cannot be written in JSON."""
-    return [offence(location(error, prefix), message(error), allowed(error)) for error in errors]
+    first = islice(errors, MOST_ERRORS)
+    return [offence(location(error, prefix), message(error), allowed(error)) for error in first]
 
 
 def location(error: Mapping[str, Any], prefix: tuple[str | int, ...]) -> tuple[Any, ...]:

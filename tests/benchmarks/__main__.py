@@ -8,6 +8,7 @@ from __future__ import annotations
 import argparse
 
 from tests.benchmarks import (
+    crowd,
     decision_cost,
     live_loop,
     recording_cost,
@@ -21,6 +22,7 @@ SECTIONS = {
     "pace": simulation_pace.report,
     "rigid": rigid_pace.report,
     "loop": live_loop.report,
+    "crowd": crowd.report,
     "recording": recording_cost.report,
     "tracking": tracking_cost.report,
     "decision": decision_cost.report,

@@ -69,6 +69,10 @@ EVENTS = (
         "test_dashboard_login",
     ),
     OutsideEvent(
+        "Huge uploads, slow bodies, floods", "nothing: they are refused", "as it is", "–", "nothing to do",
+        "test_floods",
+    ),
+    OutsideEvent(
         "Study interrupted", "how far it came; finished runs stay as they are", "ended", "as for what interrupted it",
         "resume the study", "test_study_interrupted",
     ),

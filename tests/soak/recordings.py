@@ -17,9 +17,9 @@ from tests.soak.live_rules import ON
 
 ROUNDING = 1e-4
 """Share of its limit by which a commanded current, which is rounded, may pass it."""
-LONG_SHARE = 0.01
+LONG_SHARE = 0.005
 """Share of the ticks outside faults that may come later than the longest period of a rig with a computer of its own
-without a reason; exports and replays take the interpreter for a moment (measured: 0.7 %)."""
+without a reason; exports and replays take the interpreter for a moment (measured on two cores: 0.02 %)."""
 SHORTEST_WAIT = LONGEST_PERIOD - 1.0 / 60.0
 """What makes a tick of a camera of 60 Hz so late, s: so many of the late ones are the machine's, whose load has both
 processors too, for each such time that the rig was kept from a processor."""
