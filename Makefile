@@ -6,7 +6,7 @@ JOBS ?= 2
 EVERY_TEST = $(BIN)/pytest -n $(JOBS) -m "not exclusive" && \
 	$(BIN)/pytest -m exclusive tests/browser && $(BIN)/pytest -m exclusive --ignore=tests/browser
 
-.PHONY: run setup test test-full lint format bench screenshots safety mutate clean browser toolchain help
+.PHONY: run setup test test-full lint format bench screenshots safety mutate soak clean browser toolchain help
 
 help: ## show this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | expand -t 14
@@ -42,6 +42,10 @@ screenshots: .stamps/dev browser ## take the pictures of the README anew
 
 bench: .stamps/dev ## measure, against a reference in the same run
 	$(BIN)/python -m tests.benchmarks
+
+soak: MINUTES ?= 60
+soak: .stamps/dev ## hold the simulated rig to its promises for an hour of faults under load (MINUTES=60)
+	$(BIN)/python -m tests.soak --minutes $(MINUTES) $(if $(SEED),--seed $(SEED))
 
 browser:
 	@bash .ci/need --program chromium chromium

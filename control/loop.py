@@ -277,6 +277,7 @@ class ControlLoop:
         self._judge(gap, now)
         if self._state in ENERGISED:
             self._drive(now, gap)
+        self._heed_outside()
         if frame is not None:
             self._timing.bytes_out()
         return self._snapshot()
@@ -291,8 +292,7 @@ class ControlLoop:
             self._vitals.walked(self._walk.walker.stuck, now)
         findings = self._vitals.judge(gap, now, self._state, self._pose)
         self._news.warn_of(findings, now)
-        if self._parts.actuation.stopped_from_outside and self._state is not RigState.FAULT:
-            self._latch(*self._outside)
+        self._heed_outside()
         if not findings:
             return
         worst = findings[0]
@@ -302,6 +302,12 @@ class ControlLoop:
             self._lose(worst)
         elif worst.severity is Severity.HOLD and self._state in ENERGISED:
             self._hold(worst.message, "error", worst.code)
+
+    def _heed_outside(self) -> None:
+        """A stop from another thread is heeded in the tick in which it comes, also while that waits for a controller:
+        what was seen to be off is never shown as driving."""
+        if self._parts.actuation.stopped_from_outside and self._state is not RigState.FAULT:
+            self._latch(*self._outside)
 
     def _drive(self, now: float, gap: float) -> None:
         pose = self._pose

@@ -149,8 +149,10 @@ class Lane:
             self._partial = b""
 
     def _let_everything_out(self, data: bytes) -> None:
+        """Nothing that passes now is repeated by a later fault, when the board may have booted anew."""
         rest = self._swapped + self._partial + data
         self._swapped = self._partial = b""
+        self._passed.clear()
         if rest:
             self._hold(rest)
 

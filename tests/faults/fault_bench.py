@@ -237,7 +237,10 @@ def _is_fit(snapshot: Snapshot) -> bool:
 
 
 def electrics_of(machine: Machine) -> Electrics:
-    settings = machine.settings
+    return electrics_in(machine.settings)
+
+
+def electrics_in(settings: RigFile) -> Electrics:
     coils = settings.coils.x, settings.coils.y, settings.coils.z
     x, y, z = settings.limits.current_A
     r1, r2, r3 = (coil.resistance_ohm for coil in coils)

@@ -145,6 +145,21 @@ def test_a_share_of_the_frames_meets_with_the_fault(fault: str, share: float) ->
     assert (heard == sorted(heard)) is (fault in ("lost", "garbage"))
 
 
+def test_what_an_earlier_fault_let_pass_is_not_repeated_by_a_later_one() -> None:
+    """The board may have booted anew meanwhile; what it said before would look like another boot."""
+    faults = LineFaults(lambda: 0.0, repeated=1.0)
+    lane = Lane(faults, "1")
+    for number in range(1, 50):
+        lane.put(encode(Hello(), number, 1))
+    faults.clear()
+    lane.put(encode(Hello(), 50, 1))
+    lane.take()
+    faults.repeated = 1.0
+    for number in range(1, 50):
+        lane.put(encode(Hello(), number, 2))
+    assert {packet.boot_id for packet in wire.Decoder().feed(lane.take())} == {2}
+
+
 def test_the_same_seed_does_the_same() -> None:
     def passed(seed: str) -> bytes:
         lane = Lane(LineFaults(lambda: 0.0, lost=0.3, repeated=0.3, reordered=0.3, garbage=0.3), seed)

@@ -1,14 +1,18 @@
 """A third-party controller that hangs: the coils go to zero, the page says why, and the program can be ended."""
 
 import asyncio
+import json
 import re
 import signal
 import time
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from typing import Any
 
 import pytest
+from websockets.sync.client import connect
+from websockets.sync.connection import Connection
 
 from control.simulation.lockstep import RemoteBoard
 from server.watchdog import Watchdog
@@ -125,6 +129,31 @@ def test_a_controller_that_comes_back_finds_the_way_to_the_coils_closed(
         assert server.post("/reset")["rig"] == "disarmed"
         run = server.get("/runs")["runs"][0]
         assert (run["state"], run["metrics"]["ticks"] > 0) == ("aborted", True)
+
+
+def test_a_rig_that_was_seen_at_fault_is_never_shown_walking_when_its_controller_comes_back(
+    plugin: Path, mark: Path, tmp_path: Path
+) -> None:
+    with served(tmp_path / "data", "--sim", "--plugin", str(plugin)) as server:
+        address = f"{server.address.replace('http', 'ws')}/api/v1/telemetry"
+        with connect(address, proxy=None, max_size=None) as line:
+            walk_until_it_hangs(server, "asleep for a while", mark)
+            rigs = [tick["rig"] for tick in ticks_until_it_ticks_again(line)]
+    assert set(rigs[rigs.index("fault") :]) == {"fault"}
+
+
+def ticks_until_it_ticks_again(line: Connection) -> Iterator[dict[str, Any]]:
+    """Of a rig that comes to its fault and stays there for ten ticks of its loop."""
+    stopped_at = None
+    while True:
+        message = json.loads(line.recv(timeout=10.0))
+        if message["type"] != "tick":
+            continue
+        yield message
+        if stopped_at is None and message["rig"] == "fault":
+            stopped_at = message["tick"]
+        if stopped_at is not None and message["tick"] > stopped_at + 10:
+            return
 
 
 @pytest.mark.anyio
