@@ -1,7 +1,7 @@
-"""How many connections there may be, and how long one may take to say what it wants.
+"""How many connections there may be, and how long one may take to say what it wants and to take its answer.
 
-uvicorn's protocol, with what it leaves open: whoever connects and says nothing, or a header a letter at a time, holds a
-place for ever, and so may thousands.
+uvicorn's protocol, with what it leaves open: whoever connects and says nothing, or a header a letter at a time, or
+takes nothing of its answer, holds a place for ever, and so may thousands.
 """
 
 from __future__ import annotations
@@ -23,6 +23,8 @@ HEADER_TIME = 10.0
 """Time from the first word of a request, or from connecting, to the end of its header, s."""
 IDLE_TIME = 15
 """How long a connection may wait for its next request, s."""
+TAKEN_WITHIN = 60.0
+"""Time within which a client must have taken a part of what waits for it, s."""
 FILES = 4096
 """Files and sockets that the program may have open: all places, and what it works with."""
 
@@ -38,6 +40,7 @@ class PatientProtocol(H11Protocol):
     """Refuses what is too many, and closes what is too slow."""
 
     _deadline: asyncio.TimerHandle | None = None
+    _patience: asyncio.TimerHandle | None = None
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
         super().connection_made(transport)
@@ -56,7 +59,16 @@ class PatientProtocol(H11Protocol):
 
     def connection_lost(self, exc: Exception | None) -> None:
         self._expect_nothing()
+        self._await_no_taking()
         super().connection_lost(exc)
+
+    def pause_writing(self) -> None:
+        super().pause_writing()
+        self._await_taking()
+
+    def resume_writing(self) -> None:
+        super().resume_writing()
+        self._await_no_taking()
 
     def _is_one_too_many(self) -> bool:
         if len(self.connections) > PLACES:
@@ -74,6 +86,21 @@ class PatientProtocol(H11Protocol):
         if self._deadline is not None:
             self._deadline.cancel()
             self._deadline = None
+
+    def _await_taking(self) -> None:
+        waiting = self.transport.get_write_buffer_size()
+        self._patience = self.loop.call_later(TAKEN_WITHIN, self._lose_patience, waiting)
+
+    def _lose_patience(self, waiting: int) -> None:
+        if self.transport.get_write_buffer_size() < waiting:
+            self._await_taking()
+        else:
+            self.transport.abort()
+
+    def _await_no_taking(self) -> None:
+        if self._patience is not None:
+            self._patience.cancel()
+            self._patience = None
 
 
 def allow_files() -> None:

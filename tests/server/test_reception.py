@@ -23,10 +23,15 @@ from server.reception.bodies import BURST
 from server.reception.connections import PatientProtocol
 
 pytestmark = pytest.mark.anyio
+LARGE = 16 << 20
 
 
 async def greet(_):
     return PlainTextResponse("hello")
+
+
+async def large(_):
+    return PlainTextResponse("x" * LARGE)
 
 
 async def listening(ws):
@@ -39,8 +44,9 @@ async def listening(ws):
 async def hall(monkeypatch):
     """An application behind the door and the patient protocol; with little patience and few places."""
     monkeypatch.setattr(connections, "HEADER_TIME", 0.4)
+    monkeypatch.setattr(connections, "TAKEN_WITHIN", 0.3)
     monkeypatch.setattr(connections, "PLACES", 8)
-    app = Starlette(routes=[Route("/", greet), WebSocketRoute("/listen", listening)])
+    app = Starlette(routes=[Route("/", greet), Route("/large", large), WebSocketRoute("/listen", listening)])
     app.add_middleware(Door)
     config = uvicorn.Config(app, port=0, log_config=None, http=PatientProtocol, timeout_keep_alive=1)
     server = uvicorn.Server(config)
@@ -62,6 +68,11 @@ async def opened(port, words=b""):
 async def rest_of(reader, within=5.0):
     async with asyncio.timeout(within):
         return await reader.read()
+
+
+async def until(holds):
+    while not holds():
+        await asyncio.sleep(0.01)
 
 
 async def closed(*writers):
@@ -125,6 +136,36 @@ async def test_an_open_socket_keeps_its_place_and_is_not_hurried(hall):
         assert len(server.server_state.connections) == 1
     while server.server_state.connections:
         await asyncio.sleep(0.02)
+
+
+@pytest.fixture
+async def asked_for_much(hall):
+    """A bare connection that has asked for more than the system's own buffers hold; and the server."""
+    server, port = hall
+    loop = asyncio.get_running_loop()
+    with socket.socket() as own:
+        own.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 64 << 10)
+        own.setblocking(False)
+        await loop.sock_connect(own, ("127.0.0.1", port))
+        await loop.sock_sendall(own, b"GET /large HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: close\r\n\r\n")
+        yield server, own
+
+
+async def test_who_asks_for_much_and_takes_nothing_is_let_go(asked_for_much):
+    server, _ = asked_for_much
+    async with asyncio.timeout(5.0):
+        await until(lambda: server.server_state.connections)
+        await until(lambda: not server.server_state.connections)
+
+
+async def test_who_takes_slowly_is_given_all_of_it(asked_for_much):
+    _, own = asked_for_much
+    loop, taken, began = asyncio.get_running_loop(), 0, time.monotonic()
+    while part := await loop.sock_recv(own, 1 << 20):
+        taken += len(part)
+        await asyncio.sleep(0.005)
+    assert taken > LARGE
+    assert time.monotonic() - began > 0.3
 
 
 async def test_a_flood_of_messages_ends_with_its_socket(hall):
