@@ -3,9 +3,20 @@ import { get, say, set } from "../store.js";
 import { patch, post, Problem } from "./rest.js";
 import { onRefusedEdit, sendSelection } from "./selection.js";
 
-/** @param {string} name @param {() => Promise<unknown>} call */
+/** One at a time: what is asked for meanwhile is not sent. @param {string} name @param {() => Promise<unknown>} call */
 async function act(name, call) {
   if (get().busy) return;
+  await send(name, call);
+}
+
+/** What takes the field away waits for nothing else under way: a start may be answered late. @param {string} name @param {() => Promise<unknown>} call */
+async function calm(name, call) {
+  if (get().busy === name) return;
+  await send(name, call);
+}
+
+/** @param {string} name @param {() => Promise<unknown>} call */
+async function send(name, call) {
   if (get().connection.status === "lost") return say(NOTHING_SENT);
   set({ busy: name });
   try {
@@ -13,7 +24,7 @@ async function act(name, call) {
   } catch (problem) {
     report(problem);
   } finally {
-    set({ busy: null });
+    if (get().busy === name) set({ busy: null });
   }
 }
 
@@ -49,11 +60,11 @@ export const armWithConsent = () => {
   set({ consentAsked: false });
   return act("arm", () => post("/arm", { consent: true }));
 };
-export const disarm = () => act("disarm", () => post("/disarm"));
+export const disarm = () => calm("disarm", () => post("/disarm"));
 export const reset = () => act("reset", () => post("/reset"));
-export const pauseRun = () => act("pause", () => post("/runs/current/pause"));
+export const pauseRun = () => calm("pause", () => post("/runs/current/pause"));
 export const resumeRun = () => act("resume", () => post("/runs/current/resume"));
-export const stopRun = () => act("stop run", () => post("/runs/current/stop"));
+export const stopRun = () => calm("stop run", () => post("/runs/current/stop"));
 
 /** Tells the rig which of the things that look alike is the robot, by its place in the picture, px. @param {number} u @param {number} v */
 export const followAt = (u, v) => act("follow", () => post("/vision/follow", { u, v }));

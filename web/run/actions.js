@@ -39,8 +39,8 @@ export function Actions() {
       <button class="primary" type="button" disabled=${busy !== null || why !== ""} title=${why} onClick=${act}>${label}</button>
       <p class="hint">${why || hint(tick, gait)}</p>
       <div class="secondary">
-        <button type="button" disabled=${!tick.run || busy !== null} onClick=${rig.stopRun}>Stop run</button>
-        <button type="button" disabled=${!active || busy !== null} onClick=${rig.disarm}>Disarm</button>
+        <button type="button" disabled=${!tick.run || busy === "stop run"} onClick=${rig.stopRun}>Stop run</button>
+        <button type="button" disabled=${!active || busy === "disarm"} onClick=${rig.disarm}>Disarm</button>
       </div>
     </div>
   `;
