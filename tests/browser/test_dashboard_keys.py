@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 
 import pytest
 from dashboard_visit import OpenTab, ServedRig, Visit, rig_state
-from playwright.sync_api import Locator, Page, expect
+from playwright.sync_api import APIResponse, Locator, Page, Route, expect
 
 pytestmark = pytest.mark.exclusive
 
@@ -80,3 +81,26 @@ def test_a_run_is_held_by_a_key_and_let_go_by_a_click_alone(page: Page) -> None:
     expect(sheet(page)).not_to_contain_text("Hold the run")
     sheet(page).get_by_role("button", name="Close").click()
     expect(rig_state(page)).to_contain_text("held")
+
+
+def test_a_hold_waits_for_no_answer_to_the_start(page: Page) -> None:
+    unanswered: list[tuple[Route, APIResponse]] = []
+    runs = re.compile(r"/api/v1/runs$")
+
+    def keep_the_answer(route: Route) -> None:
+        if route.request.method == "POST":
+            unanswered.append((route, route.fetch()))
+        else:
+            route.fallback()
+
+    page.route(runs, keep_the_answer)
+    page.get_by_role("button", name="Arm", exact=True).click()
+    page.get_by_role("button", name="Start walking", exact=True).click()
+    expect(rig_state(page)).to_contain_text("running")
+    expect(page.get_by_role("button", name="Disarm", exact=True)).to_be_enabled()
+    page.keyboard.press("h")
+    expect(rig_state(page)).to_contain_text("held")
+    [(route, answer)] = unanswered
+    route.fulfill(response=answer)
+    page.unroute(runs)
+    expect(page.get_by_role("button", name="Resume", exact=True)).to_be_enabled()
