@@ -3,12 +3,19 @@
 from __future__ import annotations
 
 import itertools
+import re
+from pathlib import Path
 
 import pytest
 from dashboard_visit import ServedRig, Visit, eventually, rig_state
 from playwright.sync_api import expect
 
 pytestmark = pytest.mark.exclusive
+
+LAYOUT_FAULTS = (Path(__file__).parent / "layout_faults.js").read_text(encoding="utf-8")
+WIDTHS = (360, 390, 700, 720, 899, 900, 999, 1000, 1024, 1149, 1150, 1279, 1280, 1440, 1599, 1600)
+HEIGHTS = (450, 800)
+"""Where the bar changes, on both sides, CSS px."""
 
 
 def arm(visit: Visit) -> None:
@@ -78,3 +85,20 @@ def test_the_question_mark_shows_the_keys_and_leaves_stop_in_reach(dashboard: Vi
     expect(rig_state(page)).to_contain_text("fault")
     page.get_by_role("dialog").get_by_role("button", name="Close").click()
     expect(page.get_by_role("dialog")).to_be_hidden()
+
+
+def test_stop_stays_in_the_window_whatever_else_the_bar_says(dashboard: Visit, served: ServedRig) -> None:
+    """A robot that walks, is recorded, and has something put in its way: the bar has never more to say."""
+    page = dashboard.page
+    arm(dashboard)
+    page.get_by_role("button", name="Start walking", exact=True).click()
+    expect(rig_state(page)).to_contain_text("running")
+    page.get_by_role("tab", name="Faults").click()
+    page.get_by_role("button", name=re.compile("^Scatter debris")).click()
+    expect(page.get_by_role("button", name=re.compile("^1 fault"))).to_be_visible()
+    found: dict[str, list[str]] = {}
+    for width, height in itertools.product(WIDTHS, HEIGHTS):
+        page.set_viewport_size({"width": width, "height": height})
+        found[f"{width}x{height}"] = page.evaluate(LAYOUT_FAULTS)
+    served.send("DELETE", "/simulation/faults")
+    assert {window: faults for window, faults in found.items() if faults} == {}
