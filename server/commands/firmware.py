@@ -7,7 +7,6 @@ import signal
 import subprocess
 import sys
 import time
-from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, NoReturn
 
@@ -17,6 +16,8 @@ from server.commands.outcome import FAILED, REFUSED, USAGE, console, fail
 from server.signals import handled
 
 if TYPE_CHECKING:
+    from types import FrameType
+
     from control.firmware.build import Build
     from control.simulation.emulator_port import Cycles, Stretch
 
@@ -185,14 +186,20 @@ def _given(folder: Path | None) -> tuple[Path, ...]:
 def _run_until_interrupted(command: list[str]) -> NoReturn:
     """The child prints the greeting line, and ends when its standard input is closed, at our end at the latest.
 
-    An interrupt ends it also where a shell has started it in the background, which has Python ignore interrupts.
+    An interrupt ends it also where a shell has started it in the background, which has Python ignore interrupts. It
+    raises nothing: an exception amid `poll` would leave its lock taken, and the last wait would have no end.
     """
+    is_interrupted = False
+
+    def interrupt(_number: int, _frame: FrameType | None) -> None:
+        nonlocal is_interrupted
+        is_interrupted = True
+
     with (
-        handled({signal.SIGINT: signal.default_int_handler}),
+        handled({signal.SIGINT: interrupt}),
         subprocess.Popen([*command, "--end-with-stdin"], stdin=subprocess.PIPE) as process,
-        suppress(KeyboardInterrupt),
     ):
-        while process.poll() is None:
+        while not is_interrupted and process.poll() is None:
             time.sleep(LOOK_AGAIN)  # a signal just before a wait without end would be seen at its end
     sys.exit(FAILED if process.returncode else 0)
 
