@@ -83,8 +83,8 @@ class RigChanges:
         self._as_run = as_run
         self._one_at_a_time = asyncio.Lock()
         self._watch: asyncio.Task[None] | None = None
-        self._seen = ""
-        """What the file said when its latest edit was announced."""
+        self._seen: str | None = None
+        """What the file says, where that is another thing than what runs."""
 
     def public(self) -> dict[str, Any]:
         """The file that the values come from; overridden: what in it this start of the server goes without."""
@@ -94,7 +94,7 @@ class RigChanges:
             "path": str(store.path),
             "saved": store.is_saved,
             "previous": str(previous) if previous.exists() else None,
-            "changed_on_disk": bool(self._seen),
+            "changed_on_disk": self._seen is not None,
             "overridden": list(differences(store.settings, self._as_run(store.settings))),
         }
 
@@ -194,7 +194,8 @@ class RigChanges:
             raise RigFileError(reason) from failure
 
     def _done(self, change: Change, what: str) -> Change:
-        self._seen = ""
+        self._seen = None
+        self._tell_of_file()  # later than the rig has told of its settings: the file was not in force then
         self._rig.announce("info", EVENT, f"{what}: {_listed(change.fields)}")
         return change
 
@@ -222,10 +223,12 @@ class RigChanges:
         """Tell once of each edit, whoever made it; the running settings are kept until somebody reloads."""
         async with self._one_at_a_time:
             text = await asyncio.to_thread(self._text_on_disk)
-            edited = "" if text == self._store.text else text
+            edited = None if text == self._store.text else text
             if edited != self._seen:
                 self._seen = edited
-                self._announce_edit()
+                if edited is not None:
+                    self._tell_of_edit()
+                self._tell_of_file()
 
     def _text_on_disk(self) -> str:
         """A file that is gone says nothing new: what it said is kept, and saved again with the next change."""
@@ -234,9 +237,8 @@ class RigChanges:
         except OSError:
             return self._store.text
 
-    def _announce_edit(self) -> None:
-        if self._seen:
-            self._tell_of_edit()
+    def _tell_of_file(self) -> None:
+        """To whoever shows it."""
         self._rig.announcements.publish({"type": "rig", "file": self.public()})
 
     def _tell_of_edit(self) -> None:

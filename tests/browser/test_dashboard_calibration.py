@@ -139,7 +139,7 @@ def drag_a_corner(page: Page, rig: ServedRig) -> None:
 def test_an_armed_rig_is_disarmed_by_the_setup_only_on_request(dashboard: Visit, served: ServedRig) -> None:
     page = dashboard.page
     page.get_by_role("button", name="Arm", exact=True).click()
-    expect(rig_state(page)).to_contain_text("armed")
+    expect(rig_state(page)).to_contain_text(re.compile(r"\barmed"))
     setup = open_setup(page, "Camera")
     expect(setup).to_contain_text("can be changed only while it is disarmed")
     expect(setup.get_by_role("radio").first).to_be_disabled()
@@ -156,7 +156,7 @@ def test_escape_and_the_button_stop_while_the_setup_is_open(dashboard: Visit) ->
     expect(page.get_by_role("button", name="STOP", exact=True)).to_be_in_viewport()
     for stop in (lambda: page.keyboard.press("Escape"), page.get_by_role("button", name="STOP").click):
         button(page, "Arm").click()
-        expect(rig_state(page)).to_contain_text("armed")
+        expect(rig_state(page)).to_contain_text(re.compile(r"\barmed"))
         stop()
         expect(rig_state(page)).to_contain_text("fault")
         expect(setup).to_be_visible()

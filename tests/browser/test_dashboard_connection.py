@@ -20,7 +20,7 @@ def test_a_dead_server_greys_the_page_and_its_return_brings_the_page_back(
     expect(rig_state(page)).to_contain_text("disarmed")
     expect(page.get_by_text("waiting for the first frame")).to_be_hidden()
     page.get_by_role("button", name="Arm", exact=True).click()
-    expect(rig_state(page)).to_contain_text("armed")
+    expect(rig_state(page)).to_contain_text(re.compile(r"\barmed"))
     own_server.kill()
     lost = page.get_by_role("alert").filter(has_text="No connection: the server does not answer")
     expect(lost).to_be_visible()
@@ -34,7 +34,7 @@ def test_a_dead_server_greys_the_page_and_its_return_brings_the_page_back(
     eventually(lambda: opacity(page.locator("main")) == 1.0, "the page has its colours back")
     expect(page.get_by_text("no frame for")).to_be_hidden()
     page.get_by_role("button", name="Arm", exact=True).click()
-    expect(rig_state(page)).to_contain_text("armed")
+    expect(rig_state(page)).to_contain_text(re.compile(r"\barmed"))
 
 
 def test_a_server_that_falls_silent_is_told_before_it_counts_as_lost(
@@ -65,7 +65,7 @@ def test_what_one_tab_chooses_the_other_shows_and_says(served: ServedRig, open_t
     expect(second.get_by_text("Gait changed in another tab.")).to_be_visible()
     expect(first.get_by_text("changed in another tab")).to_have_count(0)
     first.get_by_role("button", name="Arm", exact=True).click()
-    expect(rig_state(second)).to_contain_text("armed")
+    expect(rig_state(second)).to_contain_text(re.compile(r"\barmed"))
     second.keyboard.press("Escape")
     expect(rig_state(first)).to_contain_text("fault")
 
@@ -84,7 +84,7 @@ def test_a_page_of_the_version_before_says_so_and_still_stops(served: ServedRig,
     expect(updated).to_contain_text("STOP works all the same")
     expect(updated.get_by_role("button", name="Reload")).to_be_visible()
     page.get_by_role("button", name="Arm", exact=True).click()
-    expect(rig_state(page)).to_contain_text("armed")
+    expect(rig_state(page)).to_contain_text(re.compile(r"\barmed"))
     page.keyboard.press("Escape")
     expect(rig_state(page)).to_contain_text("fault")
 

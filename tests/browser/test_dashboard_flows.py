@@ -56,7 +56,7 @@ def field(place: Locator, name: str) -> Locator:
 
 
 def state_is(page: Page, word: str) -> None:
-    expect(rig_state(page)).to_contain_text(word)
+    expect(rig_state(page)).to_contain_text(re.compile(rf"\b{word}"))
 
 
 def open_page(page: Page, name: str) -> Locator:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -77,7 +78,7 @@ def test_lines_are_found_by_severity_and_words(page: Page) -> None:
 def test_a_line_of_a_run_leads_to_the_run(page: Page, workshop: ServedRig) -> None:
     tab(page).click()
     page.get_by_role("button", name="Arm", exact=True).click()
-    expect(rig_state(page)).to_contain_text("armed")
+    expect(rig_state(page)).to_contain_text(re.compile(r"\barmed"))
     workshop.send("POST", "/runs", {"duration_s": 30, "label": "the one"})
     workshop.send("POST", "/estop")
     run = workshop.ask("/runs")["runs"][0]["id"]

@@ -20,7 +20,7 @@ HEIGHTS = (450, 800)
 
 def arm(visit: Visit) -> None:
     visit.page.get_by_role("button", name="Arm", exact=True).click()
-    expect(rig_state(visit.page)).to_contain_text("armed")
+    expect(rig_state(visit.page)).to_contain_text(re.compile(r"\barmed"))
 
 
 @pytest.mark.parametrize("how", ["Escape", "Space", "click"])

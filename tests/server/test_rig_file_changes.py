@@ -218,6 +218,29 @@ async def test_an_edit_on_the_disk_is_announced_and_applied_when_somebody_asks(h
     assert load_rig_file(previous_of(here.path)).limits.field_mT == 12.0, "what ran before the edit is kept"
 
 
+async def test_what_is_told_last_of_an_applied_file_is_that_it_is_in_force(here):
+    """A page that asks when the new rig tells of its settings hears that its file is another one."""
+    await here.patch({"limits": {"field_mT": 12.0}})
+    here.path.write_text(here.path.read_text().replace("12.0", "13.0"))
+    await here.until("/rig", lambda rig: rig["file"]["changed_on_disk"])
+    told = []
+    async with here.at.socket("/api/v1/telemetry?rate_Hz=1") as telemetry:
+        await here.api.post("/rig/reload")
+        async with asyncio.timeout(PATIENCE):
+            while not (told and "file" in told[-1]):
+                message = json.loads(await telemetry.recv())
+                if message["type"] == "rig":
+                    told.append(message)
+    assert "settings" in told[0]
+    assert told[-1]["file"]["changed_on_disk"] is False
+
+
+async def test_an_emptied_file_is_an_edit_too(here):
+    await here.patch({"limits": {"field_mT": 12.0}})
+    here.path.write_text("")
+    await here.until("/rig", lambda rig: rig["file"]["changed_on_disk"])
+
+
 async def test_an_edit_that_cannot_be_used_is_announced_and_the_rig_goes_on(here):
     await here.patch({"limits": {"field_mT": 12.0}})
     here.path.write_text("[limits]\nfield_mT = -3.0\n")

@@ -1,6 +1,6 @@
 /** The server says who it is with its first words: another start of it, or another version than this page is of. */
 import { beginLogAnew } from "../log/listing.js";
-import { hearOfOperator } from "../operator/lease.js";
+import { know } from "../operator/lease.js";
 import { get, say, set } from "../store.js";
 import { createLateness } from "./lateness.js";
 import { clearTrail } from "./ticks.js";
@@ -26,7 +26,7 @@ export function greet(message) {
     say(RESTARTED, "info");
   }
   start = message.start;
-  hearOfOperator({ you: message.you, you_may: message.you_may });
+  know({ you: message.you, you_may: message.you_may });
 }
 
 /** The server's time with every few ticks: whatever is late comes after it. @param {{server_s: number}} message */

@@ -1,6 +1,7 @@
 /** Controller, trajectory and gait of the next run: on the page at once, on the rig when typing pauses. */
 import { get, set } from "../store.js";
 import { isSame, merge } from "./merging.js";
+import { question, subject } from "./order.js";
 import { PAGE_ID } from "./page_id.js";
 import { put } from "./rest.js";
 
@@ -10,6 +11,7 @@ const EDIT_PAUSE_MS = 300;
 
 /** What the rig has, as far as is known. @type {Selection | null} */
 let known = null;
+const selections = subject();
 let edited = false;
 let timer = 0;
 let refused = /** @type {(problem: unknown) => void} */ ((problem) => { throw problem; });
@@ -39,10 +41,14 @@ export async function sendSelection() {
   const sent = get().selection;
   if (!edited || !sent) return;
   known = await put(`/selection?by=${PAGE_ID}`, sent);
+  question(selections);
   edited = get().selection !== sent;
   set({ serverErrors: {} });
   if (edited) sendLater();
 }
+
+/** Whether, since then, the page has been told nothing and has sent nothing. @returns {() => boolean} */
+export const askForSelection = () => question(selections);
 
 /** The rig's own, after a connection: what was not sent before it broke is gone. @param {Selection} selection @returns {boolean} something was */
 export function adoptSelection(selection) {
@@ -56,6 +62,7 @@ export function adoptSelection(selection) {
 
 /** Somebody has chosen: this page, another one or a script. @param {Selection} selection @param {string} [by] */
 export function hearOfSelection(selection, by) {
+  question(selections);
   const mine = get().selection;
   const base = known;
   known = selection;

@@ -16,9 +16,16 @@ export const rememberedName = () => recalled(NAME) ?? "";
 export const obstacleOf = ({ operator }) => obstacleIn(operator);
 
 let isByHand = false;
+let changes = 0;
 
-/** The server tells of a change, greets, or answers. @param {Partial<Operator>} told */
+/** The server tells of a change. @param {Partial<Operator>} told */
 export function hearOfOperator(told) {
+  changes += 1;
+  know(told);
+}
+
+/** @param {Partial<Operator>} told */
+export function know(told) {
   const before = get().operator;
   const { you, you_may, holder, asking, lease_s, take_over_after_s } = { ...before, ...told };
   const after = { you, you_may, holder, asking, lease_s, take_over_after_s, heardAt: performance.now() };
@@ -35,7 +42,18 @@ function introduce({ holder }) {
   if (name && holder?.name !== name) sendFor({ name });
 }
 
-export const loadOperator = () => carriedOut(async () => hearOfOperator(await read("/operator")));
+export const loadOperator = () => carriedOut(async () => know(await unchanged(() => read("/operator"))));
+
+/** An answer that a change has overtaken on its way is older than what the page knows: the newest is asked for. @param {() => Promise<any>} call */
+async function unchanged(call) {
+  let before = changes;
+  let answer = (await call()) ?? {};
+  while (before !== changes) {
+    before = changes;
+    answer = await read("/operator");
+  }
+  return answer;
+}
 
 /** @param {() => Promise<unknown>} call */
 async function carriedOut(call) {
@@ -48,7 +66,7 @@ async function carriedOut(call) {
 }
 
 /** @param {Record<string, string>} body */
-const sendFor = (body) => carriedOut(async () => hearOfOperator((await post("/operator", body)) ?? {}));
+const sendFor = (body) => carriedOut(async () => know(await unchanged(() => post("/operator", body))));
 
 /** Takes control where it is free or due, asks for it otherwise. @param {{name?: string, note?: string}} words */
 export function takeControl({ name = rememberedName(), note } = {}) {
@@ -65,7 +83,7 @@ export const answer = (answer) => handedOver(() => post("/operator", { answer })
 /** @param {() => Promise<any>} call */
 async function handedOver(call) {
   isByHand = true;
-  await carriedOut(async () => hearOfOperator((await call()) ?? {}));
+  await carriedOut(async () => know(await unchanged(call)));
   isByHand = false;
 }
 

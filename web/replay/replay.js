@@ -95,7 +95,19 @@ function start(opening, runs) {
 
 /** Somebody has deleted a run: it cannot be shown any longer. */
 export function endIfReplayed({ event, run }) {
-  if (event === "deleted" && get().replay?.ids.includes(run.id)) giveUp(`the run ${run.id} was deleted.`);
+  if (event === "deleted") endWithout(run.id);
+}
+
+/** What happened while there was no connection was told to nobody. */
+export async function endIfGone() {
+  for (const { id } of get().replay?.runs ?? []) {
+    const isGone = await read(`/runs/${encodeURIComponent(id)}`).then(() => false, ({ status }) => status === 404);
+    if (isGone) endWithout(id);
+  }
+}
+
+function endWithout(id) {
+  if (get().replay?.ids.includes(id)) giveUp(`the run ${id} was deleted.`);
 }
 
 function giveUp(cause) {
