@@ -114,6 +114,12 @@ class ServedRig:
         with urllib.request.urlopen(request, timeout=5):
             pass
 
+    def story(self) -> str:
+        """How the rig stands and what it has said last: why something did not come to be."""
+        state = self.ask("/state")
+        said = [event["message"] for event in self.ask("/events?limit=8")["events"]]
+        return f"({state['rig']}, {state['tracking']}: {state['reason']}; {said})"
+
     def rest(self) -> None:
         """Disarmed and with the selection of a first visit, whatever the test before has left."""
         self.send("POST", "/estop")
@@ -181,6 +187,8 @@ def becomes_true(holds: Callable[[], bool], timeout: float = PATIENCE) -> bool:
     return True
 
 
-def eventually(holds: Callable[[], bool], what: str, timeout: float = PATIENCE) -> None:
+def eventually(
+    holds: Callable[[], bool], what: str, timeout: float = PATIENCE, told: Callable[[], str] = str
+) -> None:
     if not becomes_true(holds, timeout):
-        pytest.fail(f"after {timeout:g} s still not: {what}")
+        pytest.fail(f"after {timeout:g} s still not: {what} {told()}")

@@ -39,7 +39,7 @@ def recorded_walk(rig: ServedRig, label: str) -> str:
     rig.send("POST", "/arm")
     rig.send("POST", "/runs", {"duration_s": 1.0, "label": label, "tags": ["paper"]})
     newest = lambda: rig.ask("/runs?limit=1")["runs"][0]  # noqa: E731
-    eventually(lambda: newest()["recording"]["state"] == "complete", "a recorded run")
+    eventually(lambda: newest()["recording"]["state"] == "complete", "a recorded run", told=rig.story)
     return newest()["id"]
 
 
@@ -184,7 +184,7 @@ def test_a_run_is_started_again_which_gives_the_page_back_to_the_rig_and_listed_
     expect(shown).to_contain_text("Started again")
     newest = page.get_by_role("row").nth(1)
     expect(newest).to_contain_text("dry plate again")
-    expect(newest).to_contain_text("finished")
+    eventually(lambda: "finished" in newest.inner_text(), "it is over", told=library.rig.story)
     expect(newest.locator("svg.sparkline")).to_be_visible()
     button(shown, "Show it").click()
     expect(button(details(page), "Replay")).to_be_enabled()
